@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The one place that gives targets their flags, and the shape of rooms and their tests.
+include(GNUInstallDirs)
+
+# Flags of every target of ours. No -march, no -mavx: PCL and Eigen would disagree on alignment
+# (docs/architecture.md).
+function(masked_mapper_flags target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  if(MASKED_MAPPER_STRICT)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Werror)
+  endif()
+  if(MASKED_MAPPER_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${MASKED_MAPPER_SANITIZE}
+                           -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+    target_link_options(${target} PUBLIC -fsanitize=${MASKED_MAPPER_SANITIZE})
+  endif()
+  if(MASKED_MAPPER_COVERAGE)
+    target_compile_options(${target} PRIVATE --coverage)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+endfunction()
+
+# masked_mapper_room(name PUBLIC lib... PRIVATE lib...): the library of the sources in src/<name>/.
+# Its link list is the list of permitted arrows.
+function(masked_mapper_room name)
+  cmake_parse_arguments(ROOM "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  set(target masked_mapper_${name})
+  set(includes $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    masked_mapper_flags(${target})
+    target_include_directories(${target} PUBLIC ${includes})
+    target_link_libraries(${target} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  else()  # a room of headers alone
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE ${includes})
+    target_link_libraries(${target} INTERFACE ${ROOM_PUBLIC} ${ROOM_PRIVATE})
+  endif()
+  add_library(masked_mapper::${name} ALIAS ${target})
+endfunction()
+
+# masked_mapper_room_test(name lib...): one GoogleTest binary of tests/<name>/*_test.cpp.
+function(masked_mapper_room_test name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  set(target masked_mapper_${name}_test)
+  add_executable(${target} ${sources})
+  masked_mapper_flags(${target})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${target} PRIVATE GTest::gtest_main ${ARGN})
+  target_compile_definitions(${target} PRIVATE
+    MASKED_MAPPER_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    MASKED_MAPPER_REAL_LOGS="${PROJECT_SOURCE_DIR}/../shared")
+  gtest_discover_tests(${target} TEST_PREFIX ${name}/ PROPERTIES TIMEOUT 300)
+endfunction()

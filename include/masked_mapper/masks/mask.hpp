@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A mask (Section III-A, Eq. 1): a function of all observations so far to true or false, that says
+// where a scan is worth storing and matching. It sees everything and answers one question.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/sensor/laser_scan.hpp"
+
+namespace masked_mapper {
+
+/// One scan as a mask sees it.
+struct MaskObservation {
+  const LaserScan& scan;
+  Pose2 T_odom_robot;  ///< where motion puts the robot at the scan, in a frame that drifts slowly
+};
+
+class Mask {
+ public:
+  virtual ~Mask() = default;
+  /// Called for every scan, in order, whether or not a node may be made there.
+  virtual void Observe(const MaskObservation& observation) = 0;
+  /// Whether the scan observed last is worth a node.
+  virtual bool Fires() const = 0;
+  /// A scan node was made at the observation seen last.
+  virtual void OnNode() {}
+  /// The robot is somewhere else altogether (a new floor): forget everything.
+  virtual void Restart() = 0;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The occupancy grid of one floor, from scans at their final poses.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "masked_mapper/rendering/posed_scan.hpp"
+
+namespace masked_mapper {
+
+enum class Cell : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
+
+struct GridOptions {
+  double resolution_m = 0.05;
+  double max_usable_range_m = 30.0;  ///< beams are drawn up to here
+  double free_range_without_return_m = 8.0;  ///< how far a beam that met nothing clears; 0: it does not
+  double occupied_ratio = 0.4;  ///< share of hits among visits from which a cell is a wall
+  int min_hits = 2;             ///< hits a cell needs at the least
+  int threads = 1;
+};
+
+/// Row-major, row 0 at the smallest y. The cell (column, row) covers
+/// [origin + (column, row) * resolution, + resolution); the origin is a multiple of the resolution.
+struct OccupancyGrid {
+  double resolution_m = 0.05;
+  double origin_x = 0.0;  ///< m, in world
+  double origin_y = 0.0;
+  int width = 0;
+  int height = 0;
+  std::vector<Cell> cells;
+
+  Cell at(int column, int row) const {
+    return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(column)];
+  }
+};
+
+/// The grid of the scans on `floor`; empty (0 x 0) without any. Same result at any thread count.
+OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor,
+                         const GridOptions& options);
+
+/// Area known to be free or occupied, m^2.
+double KnownArea(const OccupancyGrid& grid);
+
+}  // namespace masked_mapper

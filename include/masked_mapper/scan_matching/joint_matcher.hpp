@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many-to-many multi-resolution correlative scan matching (M3RSM; Olson 2015, Section III-D of the
+// masked mapper). All pairs of a call share one best-first queue keyed by an upper bound of their
+// objective; the first full-resolution entry of a pair to reach the top is the exact optimum of that
+// pair over its search grid, and a pair that cannot reach the minimum score is never refined.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
+
+namespace masked_mapper {
+
+struct MatcherOptions {
+  LookupTableOptions table;
+  double min_score = 0.425;         ///< 0-1, the paper's MinScore
+  double window_sigmas = 3.0;       ///< half-width of the search window, in sigmas of the guess
+  double min_window_m = 0.3;        ///< half-width, m
+  double max_window_m = 6.0;        ///< half-width, m
+  double min_window_deg = 3.0;      ///< half-width, deg
+  double max_window_deg = 45.0;     ///< half-width, deg
+  double angle_step_deg = 0.5;      ///< deg between search angles
+  double point_spacing_m = 0.1;     ///< the query scan is thinned to one point per cell of this size
+  double prior_weight = 0.005;      ///< objective = score - prior_weight * chi^2 of the guess
+  std::size_t table_memory_mib = 64;  ///< budget of cached look-up tables
+  int threads = 1;
+};
+
+/// One pair offered to the matcher. Scans are named by a caller's key so that tables can be cached.
+struct MatchPair {
+  std::int64_t reference_key = 0;
+  ScanPoints::ConstPtr points_in_reference;
+  ScanPoints::ConstPtr points_in_query;
+  UncertainPose2 T_reference_query_guess;  ///< centre of the window, and prior
+};
+
+enum class MatchOutcome { kMatched, kBelowMinScore };
+
+struct MatchResult {
+  MatchOutcome outcome = MatchOutcome::kBelowMinScore;
+  /// Matched: the optimum refined below the cell, with the covariance of the response surface.
+  /// Otherwise the guess.
+  UncertainPose2 T_reference_query;
+  double score = 0.0;  ///< 0-1 at the optimum; for an abandoned pair the bound it was given up at
+};
+
+class JointMatcher {
+ public:
+  explicit JointMatcher(const MatcherOptions& options);
+  ~JointMatcher();
+
+  /// Matches all pairs; results in the order of the pairs, the same at any number of threads.
+  std::vector<MatchResult> Match(const std::vector<MatchPair>& pairs);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace masked_mapper

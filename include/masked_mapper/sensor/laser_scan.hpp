@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One sweep of a 2D lidar: beams as measured, and the same as points in the robot frame.
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/geometry/pose2.hpp"
+
+namespace masked_mapper {
+
+using ScanPoints = pcl::PointCloud<pcl::PointXY>;
+
+/// Range of a beam that met nothing within the scanner's reach: free space up to `max_range`.
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+/// Range of a beam that says nothing (garbage in the log, too close to be true).
+constexpr float kInvalidRange = std::numeric_limits<float>::quiet_NaN();
+
+struct LaserScan {
+  double stamp = 0.0;                  ///< s, never decreasing within a log as a reader hands it out
+  Pose2 T_robot_laser;                 ///< pose of the scanner on the robot
+  double first_angle = 0.0;            ///< rad, direction of beam 0 in the laser frame
+  double angle_step = 0.0;             ///< rad, counter-clockwise positive; negative when mirrored
+  float max_range = 0.0F;              ///< m, beyond which nothing is returned
+  std::vector<float> ranges;           ///< m; finite > 0, or kNoReturn, or kInvalidRange
+  std::optional<Pose2> T_odom_robot;   ///< odometry at the scan's stamp, where the log has it
+
+  std::size_t size() const { return ranges.size(); }
+  /// Direction of a beam in the laser frame, rad, not wrapped.
+  double Angle(std::size_t beam) const {
+    return first_angle + angle_step * static_cast<double>(beam);
+  }
+  /// Whether the beams go all round, so that the last is the neighbour of the first.
+  bool IsFullCircle() const;
+  /// Whether a beam hit something.
+  bool IsHit(std::size_t beam) const { return ranges[beam] < max_range; }
+};
+
+/// The hits of a scan as points in the robot frame, in beam order; never null.
+ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan);
+
+}  // namespace masked_mapper

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/sensor/laser_scan.hpp"
+
+#include <cmath>
+
+namespace masked_mapper {
+
+bool LaserScan::IsFullCircle() const {
+  if (ranges.size() < 3) return false;
+  // One step short of a turn, as 360 beams at 1 degree are; half a step of slack for rounded steps.
+  const double span = std::abs(angle_step) * static_cast<double>(ranges.size());
+  return span > 2.0 * kPi - 0.5 * std::abs(angle_step);
+}
+
+ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan) {
+  ScanPoints::Ptr points(new ScanPoints);
+  points->reserve(scan.size());
+  for (std::size_t beam = 0; beam < scan.size(); ++beam) {
+    if (!scan.IsHit(beam)) continue;
+    const double angle = scan.T_robot_laser.theta + scan.Angle(beam);
+    const double range = scan.ranges[beam];
+    pcl::PointXY point;
+    point.x = static_cast<float>(scan.T_robot_laser.x + range * std::cos(angle));
+    point.y = static_cast<float>(scan.T_robot_laser.y + range * std::sin(angle));
+    points->push_back(point);
+  }
+  return points;
+}
+
+}  // namespace masked_mapper
