@@ -9,8 +9,7 @@ namespace masked_mapper {
 
 double MahalanobisDistance(const Eigen::Vector2d& displacement, const Eigen::Matrix2d& covariance,
                            double range_m) {
-  const Eigen::Matrix2d spread =
-      covariance + range_m * range_m * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d spread = covariance + range_m * range_m * Eigen::Matrix2d::Identity();
   const Eigen::LDLT<Eigen::Matrix2d> factor(spread);
   return std::sqrt(std::max(0.0, displacement.dot(factor.solve(displacement))));
 }

@@ -7,8 +7,8 @@ namespace masked_mapper {
 
 std::optional<PolygonMoments> ComputePolygonMoments(const std::vector<Eigen::Vector2d>& corners) {
   if (corners.size() < 3) return std::nullopt;
-  // Sums of signed moments of the triangles (reference, p, q): parts outside the polygon cancel. The
-  // first corner is the reference so that a polygon far from the origin loses no digits.
+  // Sums of signed moments of the triangles (reference, p, q): parts outside the polygon cancel.
+  // The first corner is the reference so that a polygon far from the origin loses no digits.
   const Eigen::Vector2d reference = corners.front();
   double area = 0.0;
   double scale = 0.0;
@@ -22,8 +22,7 @@ std::optional<PolygonMoments> ComputePolygonMoments(const std::vector<Eigen::Vec
     area += triangle;
     scale += std::abs(triangle);
     first += triangle / 3.0 * sum;
-    second += triangle / 12.0 *
-              (p * p.transpose() + q * q.transpose() + sum * sum.transpose());
+    second += triangle / 12.0 * (p * p.transpose() + q * q.transpose() + sum * sum.transpose());
   }
   if (!(std::abs(area) > 1e-12 * scale) || !std::isfinite(area)) return std::nullopt;
   PolygonMoments moments;

@@ -28,8 +28,8 @@ Eigen::Matrix3d ComposeJacobianRight(const Pose2& T_a_b, const Pose2& /*T_b_c*/)
 UncertainPose2 operator*(const UncertainPose2& T_a_b, const UncertainPose2& T_b_c) {
   const Eigen::Matrix3d j1 = ComposeJacobianLeft(T_a_b.mean, T_b_c.mean);
   const Eigen::Matrix3d j2 = ComposeJacobianRight(T_a_b.mean, T_b_c.mean);
-  return {T_a_b.mean * T_b_c.mean, j1 * T_a_b.covariance * j1.transpose() +
-                                       j2 * T_b_c.covariance * j2.transpose()};
+  return {T_a_b.mean * T_b_c.mean,
+          j1 * T_a_b.covariance * j1.transpose() + j2 * T_b_c.covariance * j2.transpose()};
 }
 
 UncertainPose2 Inverse(const UncertainPose2& T_a_b) {

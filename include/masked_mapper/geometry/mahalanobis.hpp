@@ -8,9 +8,9 @@
 
 namespace masked_mapper {
 
-/// sqrt(z^T (Sigma + range_m^2 I)^-1 z), Eq. 7: how far two nodes may be apart and still see the same
-/// place. `displacement` and `covariance` are in one frame; metres. `range_m` is R of the paper.
-/// A covariance that is not positive semi-definite is the caller's bug.
+/// sqrt(z^T (Sigma + range_m^2 I)^-1 z), Eq. 7: how far two nodes may be apart and still see the
+/// same place. `displacement` and `covariance` are in one frame; metres. `range_m` is R of the
+/// paper. A covariance that is not positive semi-definite is the caller's bug.
 double MahalanobisDistance(const Eigen::Vector2d& displacement, const Eigen::Matrix2d& covariance,
                            double range_m);
 

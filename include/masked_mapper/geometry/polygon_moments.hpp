@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact area moments of a polygon (Section III-D, Eq. 8): area, centroid and covariance of a uniform
-// density over it, by triangulation from the origin.
+// Exact area moments of a polygon (Section III-D, Eq. 8): area, centroid and covariance of a
+// uniform density over it, by triangulation from the origin.
 #pragma once
 
 #include <Eigen/Core>

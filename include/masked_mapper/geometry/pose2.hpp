@@ -49,8 +49,8 @@ inline Pose2 Inverse(const Pose2& T_a_b) {
 /// T_a_b of two poses in a common frame: what b looks like from a.
 inline Pose2 Between(const Pose2& T_w_a, const Pose2& T_w_b) { return Inverse(T_w_a) * T_w_b; }
 
-/// The fraction of the way from T_w_a (0) to T_w_b (1): translation along the straight line, rotation
-/// along the shorter arc. This is how a pose between two stamps is read everywhere.
+/// The fraction of the way from T_w_a (0) to T_w_b (1): translation along the straight line,
+/// rotation along the shorter arc. This is how a pose between two stamps is read everywhere.
 inline Pose2 Interpolate(const Pose2& T_w_a, const Pose2& T_w_b, double fraction) {
   return {T_w_a.x + fraction * (T_w_b.x - T_w_a.x), T_w_a.y + fraction * (T_w_b.y - T_w_a.y),
           WrapAngle(T_w_a.theta + fraction * WrapAngle(T_w_b.theta - T_w_a.theta))};

@@ -13,32 +13,32 @@
 namespace masked_mapper {
 
 struct LogOptions {
-  double max_range = 0.0;         ///< m; ranges at or beyond it are "no return"; 0: found from the log
-  double min_range = 0.05;        ///< m; anything nearer says nothing
-  double laser_x = 0.0;           ///< m, scanner on the robot, for logs that do not say
-  double laser_y = 0.0;           ///< m
-  double laser_theta_deg = 0.0;   ///< deg
-  double field_of_view_deg = 0.0; ///< deg, of FLASER; 0: by the number of beams (DESIGN, Logs)
-  bool read_ranges = true;        ///< false: scans come without beams (a first look at a long log)
+  double max_range = 0.0;   ///< m; ranges at or beyond it are "no return"; 0: found from the log
+  double min_range = 0.05;  ///< m; anything nearer says nothing
+  double laser_x = 0.0;     ///< m, scanner on the robot, for logs that do not say
+  double laser_y = 0.0;     ///< m
+  double laser_theta_deg = 0.0;    ///< deg
+  double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by the number of beams (DESIGN, Logs)
+  bool read_ranges = true;         ///< false: scans come without beams (a first look at a long log)
 };
 
 /// What a reader met so far. Everything skipped is counted here and nowhere else.
 struct LogStatistics {
-  std::uint64_t lines = 0;             ///< lines or messages read
+  std::uint64_t lines = 0;  ///< lines or messages read
   std::uint64_t scans = 0;
-  std::uint64_t odometry = 0;          ///< odometry readings of their own (not those inside scans)
+  std::uint64_t odometry = 0;  ///< odometry readings of their own (not those inside scans)
   std::uint64_t pressure = 0;
   std::uint64_t acceleration = 0;
   std::uint64_t floor_labels = 0;
-  std::uint64_t bad_lines = 0;         ///< skipped: malformed, wrong count, not a number
-  std::string first_bad_line;          ///< "line 17: expected 180 ranges, found 179"
-  std::uint64_t empty_scans = 0;       ///< valid, but not one beam returned
-  std::uint64_t stamp_jumps = 0;       ///< stamps that stepped backwards or wrapped, and were mended
-  bool truncated = false;              ///< the file ends in the middle of a line or of its gzip stream
+  std::uint64_t bad_lines = 0;    ///< skipped: malformed, wrong count, not a number
+  std::string first_bad_line;     ///< "line 17: expected 180 ranges, found 179"
+  std::uint64_t empty_scans = 0;  ///< valid, but not one beam returned
+  std::uint64_t stamp_jumps = 0;  ///< stamps that stepped backwards or wrapped, and were mended
+  bool truncated = false;         ///< the file ends in the middle of a line or of its gzip stream
   std::map<std::string, std::uint64_t> other_messages;  ///< counted, not read
-  double max_range = 0.0;              ///< m, the limit in force (given or found)
-  double first_stamp = 0.0;            ///< s
-  double last_stamp = 0.0;             ///< s
+  double max_range = 0.0;                               ///< m, the limit in force (given or found)
+  double first_stamp = 0.0;                             ///< s
+  double last_stamp = 0.0;                              ///< s
 };
 
 class LogReader {
@@ -52,7 +52,8 @@ class LogReader {
 };
 
 /// Opens a log by its content (CARMEN text, plain or gzip).
-/// Throws InputError when it cannot be read as a log at all: no such file, a directory, empty, binary.
+/// Throws InputError when it cannot be read as a log at all: no such file, a directory, empty,
+/// binary.
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogOptions& options);
 
 }  // namespace masked_mapper

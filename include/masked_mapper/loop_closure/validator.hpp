@@ -9,8 +9,9 @@
 namespace masked_mapper {
 
 struct ValidatorOptions {
-  int votes_needed = 6;            ///< paper: 6
-  double max_loop_error = 2.0;     ///< Mahalanobis distance from identity of an agreeing loop; paper: 2
+  int votes_needed = 6;  ///< paper: 6
+  double max_loop_error =
+      2.0;  ///< Mahalanobis distance from identity of an agreeing loop; paper: 2
 };
 
 using HypothesisId = std::int32_t;
@@ -27,10 +28,10 @@ class LoopValidator {
  public:
   explicit LoopValidator(const ValidatorOptions& options);
 
-  /// Adds matches as hypotheses and judges each, over the graph's odometry, floor-change and validated
-  /// closure edges and over the other hypotheses. Returns the hypotheses that became valid by this
-  /// call (the new ones or older ones that got their last vote), in order of ids. The caller adds
-  /// their edges to the graph.
+  /// Adds matches as hypotheses and judges each, over the graph's odometry, floor-change and
+  /// validated closure edges and over the other hypotheses. Returns the hypotheses that became
+  /// valid by this call (the new ones or older ones that got their last vote), in order of ids. The
+  /// caller adds their edges to the graph.
   std::vector<HypothesisId> Judge(const PoseGraph& graph, const std::vector<Hypothesis>& matches);
 
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }

@@ -15,12 +15,12 @@ namespace masked_mapper {
 
 /// The pose of one scan of the log.
 struct TrajectoryPose {
-  double stamp = 0.0;   ///< s
-  FloorId floor = 0;    ///< in transit: the floor left last
+  double stamp = 0.0;  ///< s
+  FloorId floor = 0;   ///< in transit: the floor left last
   bool in_transit = false;
   NodeId node_before = 0;  ///< the last node made at or before this scan
-  Pose2 T_odom_robot;   ///< along the motion path
-  Pose2 T_world_robot;  ///< after optimisation
+  Pose2 T_odom_robot;      ///< along the motion path
+  Pose2 T_world_robot;     ///< after optimisation
 };
 
 /// A scan kept for rendering (thinned by travelled distance).
@@ -63,7 +63,7 @@ struct MappingResult {
   std::vector<ClosureAttempt> attempts;    ///< in order of offering
   LogStatistics log;
   StageSeconds seconds;
-  std::vector<std::string> warnings;       ///< one line each, for people
+  std::vector<std::string> warnings;  ///< one line each, for people
 };
 
 }  // namespace masked_mapper

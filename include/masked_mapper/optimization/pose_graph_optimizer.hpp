@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Least squares over a pose graph on SE(2), all floors at once (Section III-B). Ceres stays behind this
-// header.
+// Least squares over a pose graph on SE(2), all floors at once (Section III-B). Ceres stays behind
+// this header.
 #pragma once
 
 #include "masked_mapper/pose_graph/pose_graph.hpp"
@@ -9,7 +9,7 @@ namespace masked_mapper {
 
 struct OptimizerOptions {
   int max_iterations = 50;
-  double function_tolerance = 1e-6;   ///< relative decrease of chi^2 at which the solve ends
+  double function_tolerance = 1e-6;  ///< relative decrease of chi^2 at which the solve ends
 };
 
 struct OptimizationSummary {

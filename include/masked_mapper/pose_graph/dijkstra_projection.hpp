@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dijkstra projection (Section III-C, Eq. 2-6): where every other node lies as seen from one node, by
-// the path whose covariance has the smallest trace. The trace mixes m^2 and rad^2 and is not additive
-// over a composed path, so this is the paper's approximation: a node is settled with the first
-// (least-trace) composition that reaches it.
+// Dijkstra projection (Section III-C, Eq. 2-6): where every other node lies as seen from one node,
+// by the path whose covariance has the smallest trace. The trace mixes m^2 and rad^2 and is not
+// additive over a composed path, so this is the paper's approximation: a node is settled with the
+// first (least-trace) composition that reaches it.
 #pragma once
 
 #include <limits>
@@ -20,11 +20,12 @@ struct ProjectedNode {
 };
 
 struct ProjectionLimits {
-  double max_cost = std::numeric_limits<double>::infinity();  ///< trace beyond which nothing follows
+  double max_cost =
+      std::numeric_limits<double>::infinity();  ///< trace beyond which nothing follows
 };
 
-/// Nodes reachable from `source` (itself first, with zero covariance), in order of settling: cost, then
-/// id. Crosses floors.
+/// Nodes reachable from `source` (itself first, with zero covariance), in order of settling: cost,
+/// then id. Crosses floors.
 std::vector<ProjectedNode> DijkstraProjection(const PoseGraph& graph, NodeId source,
                                               const ProjectionLimits& limits = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The masked pose graph (Section III-B): nodes, edges and floors of a whole building. Measurements are
-// immutable; the optimised pose of a node is the one thing that moves.
+// The masked pose graph (Section III-B): nodes, edges and floors of a whole building. Measurements
+// are immutable; the optimised pose of a node is the one thing that moves.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace masked_mapper {
 
-using NodeId = std::int32_t;    ///< place in PoseGraph::nodes()
-using EdgeId = std::int32_t;    ///< place in PoseGraph::edges()
-using FloorId = std::int32_t;   ///< place in PoseGraph::floors(), in order of first visit
+using NodeId = std::int32_t;   ///< place in PoseGraph::nodes()
+using EdgeId = std::int32_t;   ///< place in PoseGraph::edges()
+using FloorId = std::int32_t;  ///< place in PoseGraph::floors(), in order of first visit
 
 struct Floor {
   std::string label;
-  double elevation = 0.0;        ///< m above the first floor of the log
-  double elevation_sigma = 0.0;  ///< m
+  double elevation = 0.0;           ///< m above the first floor of the log
+  double elevation_sigma = 0.0;     ///< m
   bool elevation_measured = false;  ///< false: a typical storey height was assumed
 };
 
 struct Node {
-  double stamp = 0.0;                  ///< s
+  double stamp = 0.0;  ///< s
   FloorId floor = 0;
-  Pose2 T_odom_robot;                  ///< where motion put the robot
+  Pose2 T_odom_robot;                    ///< where motion put the robot
   ScanPoints::ConstPtr points_in_robot;  ///< null for an odometry-only node
-  Pose2 T_world_robot;                 ///< optimised
+  Pose2 T_world_robot;                   ///< optimised
 
   bool HasScan() const { return points_in_robot != nullptr; }
 };

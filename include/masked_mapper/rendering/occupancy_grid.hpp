@@ -14,7 +14,8 @@ enum class Cell : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
 struct GridOptions {
   double resolution_m = 0.05;
   double max_usable_range_m = 30.0;  ///< beams are drawn up to here
-  double free_range_without_return_m = 8.0;  ///< how far a beam that met nothing clears; 0: it does not
+  double free_range_without_return_m =
+      8.0;                      ///< how far a beam that met nothing clears; 0: it does not
   double occupied_ratio = 0.4;  ///< share of hits among visits from which a cell is a wall
   int min_hits = 2;             ///< hits a cell needs at the least
   int threads = 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many-to-many multi-resolution correlative scan matching (M3RSM; Olson 2015, Section III-D of the
 // masked mapper). All pairs of a call share one best-first queue keyed by an upper bound of their
-// objective; the first full-resolution entry of a pair to reach the top is the exact optimum of that
-// pair over its search grid, and a pair that cannot reach the minimum score is never refined.
+// objective; the first full-resolution entry of a pair to reach the top is the exact optimum of
+// that pair over its search grid, and a pair that cannot reach the minimum score is never refined.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace masked_mapper {
 
 struct MatcherOptions {
   LookupTableOptions table;
-  double min_score = 0.425;         ///< 0-1, the paper's MinScore
-  double window_sigmas = 3.0;       ///< half-width of the search window, in sigmas of the guess
-  double min_window_m = 0.3;        ///< half-width, m
-  double max_window_m = 6.0;        ///< half-width, m
-  double min_window_deg = 3.0;      ///< half-width, deg
-  double max_window_deg = 45.0;     ///< half-width, deg
-  double angle_step_deg = 0.5;      ///< deg between search angles
-  double point_spacing_m = 0.1;     ///< the query scan is thinned to one point per cell of this size
-  double prior_weight = 0.005;      ///< objective = score - prior_weight * chi^2 of the guess
+  double min_score = 0.425;      ///< 0-1, the paper's MinScore
+  double window_sigmas = 3.0;    ///< half-width of the search window, in sigmas of the guess
+  double min_window_m = 0.3;     ///< half-width, m
+  double max_window_m = 6.0;     ///< half-width, m
+  double min_window_deg = 3.0;   ///< half-width, deg
+  double max_window_deg = 45.0;  ///< half-width, deg
+  double angle_step_deg = 0.5;   ///< deg between search angles
+  double point_spacing_m = 0.1;  ///< the query scan is thinned to one point per cell of this size
+  double prior_weight = 0.005;   ///< objective = score - prior_weight * chi^2 of the guess
   std::size_t table_memory_mib = 64;  ///< budget of cached look-up tables
   int threads = 1;
 };

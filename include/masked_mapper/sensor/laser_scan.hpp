@@ -22,13 +22,13 @@ constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 constexpr float kInvalidRange = std::numeric_limits<float>::quiet_NaN();
 
 struct LaserScan {
-  double stamp = 0.0;                  ///< s, never decreasing within a log as a reader hands it out
-  Pose2 T_robot_laser;                 ///< pose of the scanner on the robot
-  double first_angle = 0.0;            ///< rad, direction of beam 0 in the laser frame
-  double angle_step = 0.0;             ///< rad, counter-clockwise positive; negative when mirrored
-  float max_range = 0.0F;              ///< m, beyond which nothing is returned
-  std::vector<float> ranges;           ///< m; finite > 0, or kNoReturn, or kInvalidRange
-  std::optional<Pose2> T_odom_robot;   ///< odometry at the scan's stamp, where the log has it
+  double stamp = 0.0;                 ///< s, never decreasing within a log as a reader hands it out
+  Pose2 T_robot_laser;                ///< pose of the scanner on the robot
+  double first_angle = 0.0;           ///< rad, direction of beam 0 in the laser frame
+  double angle_step = 0.0;            ///< rad, counter-clockwise positive; negative when mirrored
+  float max_range = 0.0F;             ///< m, beyond which nothing is returned
+  std::vector<float> ranges;          ///< m; finite > 0, or kNoReturn, or kInvalidRange
+  std::optional<Pose2> T_odom_robot;  ///< odometry at the scan's stamp, where the log has it
 
   std::size_t size() const { return ranges.size(); }
   /// Direction of a beam in the laser frame, rad, not wrapped.

@@ -22,7 +22,7 @@ struct PressureReading {
 };
 
 struct AccelerationReading {
-  double stamp = 0.0;                                             ///< s
+  double stamp = 0.0;                                               ///< s
   Eigen::Vector3d acceleration_in_robot = Eigen::Vector3d::Zero();  ///< m/s^2, gravity included
 };
 

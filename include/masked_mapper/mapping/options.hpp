@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every option of a mapping run, by composition of the rooms' own structs.
+#pragma once
+
+#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+#include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+
+namespace masked_mapper {
+
+/// Where nodes are made (Section III-B) and which scans are kept for rendering.
+struct NodeOptions {
+  double min_edge_length_m = 1.5;      ///< between scan nodes, straight line; paper: 1.5
+  double max_edge_length_m = 9.0;      ///< to the last node of any kind; paper: 9
+  double kept_scan_distance_m = 0.15;  ///< travel from one rendered scan to the next
+  double kept_scan_angle_deg = 10.0;   ///< or turn, whichever comes first
+};
+
+struct Options {
+  LogOptions log;
+  DeadReckoningOptions odometry;
+  NodeOptions nodes;
+  MaskOptions masks;
+  CandidateOptions candidates;
+  MatcherOptions matcher;
+  ValidatorOptions validator;
+  OptimizerOptions optimizer;
+  GridOptions grid;
+  int threads = 0;  ///< 0: as many as the machine has
+};
+
+}  // namespace masked_mapper
