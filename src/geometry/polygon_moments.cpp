@@ -9,7 +9,7 @@ std::optional<PolygonMoments> ComputePolygonMoments(const std::vector<Eigen::Vec
   if (corners.size() < 3) return std::nullopt;
   // Sums of signed moments of the triangles (reference, p, q): parts outside the polygon cancel.
   // The first corner is the reference so that a polygon far from the origin loses no digits.
-  const Eigen::Vector2d reference = corners.front();
+  const Eigen::Vector2d& reference = corners.front();
   double area = 0.0;
   double scale = 0.0;
   Eigen::Vector2d first = Eigen::Vector2d::Zero();
