@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The occupancy grid of one floor, from scans at their final poses.
+// The occupancy grid of one floor, from scans at their final poses. Every beam votes: each cell
+// that it crosses was visited, the cell in which it ends was hit. Near beams lie densely and so
+// outvote far ones, whose ends are less certain; that keeps walls thin.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +15,17 @@ enum class Cell : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
 
 struct GridOptions {
   double resolution_m = 0.05;
-  double max_usable_range_m = 30.0;  ///< beams are drawn up to here
-  double free_range_without_return_m =
-      8.0;                      ///< how far a beam that met nothing clears; 0: it does not
+  double max_usable_range_m = 30.0;          ///< beams are drawn up to here
+  double free_range_without_return_m = 8.0;  ///< what a beam that met nothing clears; 0: nothing
   double occupied_ratio = 0.4;  ///< share of hits among visits from which a cell is a wall
-  int min_hits = 2;             ///< hits a cell needs at the least
+  int min_hits = 2;  ///< hits a wall cell needs at the least; with fewer it stays unknown
   int threads = 1;
+};
+
+/// Where the wall in an occupied cell stands: the mean of the cell's hits, m, in world.
+struct WallPoint {
+  float x = 0.0F;
+  float y = 0.0F;
 };
 
 /// Row-major, row 0 at the smallest y. The cell (column, row) covers
@@ -30,6 +37,7 @@ struct OccupancyGrid {
   int width = 0;
   int height = 0;
   std::vector<Cell> cells;
+  std::vector<WallPoint> walls;  ///< one per occupied cell, in the order of cells
 
   Cell at(int column, int row) const {
     return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
@@ -37,7 +45,8 @@ struct OccupancyGrid {
   }
 };
 
-/// The grid of the scans on `floor`; empty (0 x 0) without any. Same result at any thread count.
+/// The grid of the scans on `floor`; empty (0 x 0) when no beam of them tells anything. Same result
+/// at any thread count. Throws InputError when the floor is too large for cells of this size.
 OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor,
                          const GridOptions& options);
 
