@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The openings mask (Section III-D, 4): fires where the robot could turn off its course, and where
+// it turned back. openings.hpp says how no-return beams and scanners below 360 degrees are treated.
+//
+// Directions are followed in the frame of odometry, which does not turn with the robot.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/masks/mask.hpp"
+#include "masked_mapper/masks/openings.hpp"
+
+namespace masked_mapper {
+
+struct OpeningsMaskOptions {
+  OpeningOptions detection;
+
+  // (d) Ours but for the idea: a direction is kept when it was seen in `min_share` of the scans of
+  // the horizon, with a standard deviation of at most `max_deviation_deg`.
+  double horizon_s = 1.5;           ///< s
+  int min_horizon_scans = 4;        ///< however long ago, for slow scanners
+  double min_share = 0.7;           ///< 0-1
+  double max_deviation_deg = 12.0;  ///< deg
+  double max_step_deg = 20.0;       ///< deg between sightings of one direction
+
+  // (e)
+  double min_turn_deg = 40.0;      ///< deg off the course; paper: 40
+  double max_turn_deg = 90.0;      ///< deg off the course; paper: 90
+  double course_distance_m = 0.5;  ///< m of path that the course is taken over (ours)
+
+  // (f)
+  double dead_end_turn_deg = 150.0;  ///< deg; paper: 150
+  double dead_end_distance_m = 0.5;  ///< m from the last node before there is a direction (ours)
+};
+
+/// The robot's direction of travel in the odometry frame.
+class Course {
+ public:
+  explicit Course(double distance_m) : distance_m_(distance_m) {}
+
+  void Observe(const Pose2& T_odom_robot);
+  /// rad. At rest, and while the robot turns on the spot, the last course stands; before the first
+  /// motion it is the heading (ours).
+  double Direction() const { return direction_; }
+
+ private:
+  double distance_m_;
+  std::deque<Eigen::Vector2d> path_in_odom_;  ///< about the last `distance_m_`, thinned
+  double path_length_ = 0.0;
+  bool has_moved_ = false;
+  double direction_ = 0.0;
+};
+
+/// Whether the robot turned back since a node.
+class DeadEnd {
+ public:
+  void Observe(const Pose2& T_odom_robot);
+  /// The node stands where the robot was observed last.
+  void OnNode() {
+    T_odom_node_ = T_odom_robot_;
+    forward_ = 0.0;
+  }
+  /// rad between the heading and the direction of travel since the node; 0 within `min_distance_m`.
+  double Turned(double min_distance_m) const;
+
+ private:
+  std::optional<Pose2> T_odom_node_;  ///< the first observation until there is a node
+  std::optional<Pose2> T_odom_robot_;
+  double forward_ = 0.0;  ///< m driven along the heading since the node; negative when reversing
+};
+
+/// Directions of openings over a short horizon.
+class DirectionTracks {
+ public:
+  explicit DirectionTracks(const OpeningsMaskOptions& options) : options_(options) {}
+
+  void Observe(double stamp, const std::vector<double>& directions_in_odom);
+  /// The directions seen often enough and steadily enough, rad in the odometry frame.
+  std::vector<double> Kept() const;
+
+ private:
+  struct Sighting {
+    std::size_t scan;
+    double direction;  ///< rad, unwrapped along its track
+  };
+  using Track = std::deque<Sighting>;
+
+  void Forget();
+
+  OpeningsMaskOptions options_;
+  std::deque<double> stamps_;  ///< of the scans within the horizon
+  std::size_t next_scan_ = 0;  ///< counts up; the scan in front of `stamps_` is next - size
+  std::vector<Track> tracks_;
+};
+
+class OpeningsMask : public Mask {
+ public:
+  explicit OpeningsMask(const OpeningsMaskOptions& options);
+
+  void Observe(const MaskObservation& observation) override;
+  bool Fires() const override { return fires_; }
+  void OnNode() override { dead_end_.OnNode(); }
+  void Restart() override;
+
+ private:
+  OpeningsMaskOptions options_;
+  DirectionTracks tracks_;
+  Course course_;
+  DeadEnd dead_end_;
+  bool fires_ = false;
+};
+
+}  // namespace masked_mapper
