@@ -20,7 +20,9 @@ struct OptimizationSummary {
 };
 
 /// Moves the optimised poses of `graph` to the least-squares solution, from where they stand (warm
-/// start). Node 0 stays, and with it every component's first node. Single-threaded: same bytes.
+/// start), or, where they fit very poorly, from the Dijkstra projection of each component's first
+/// node, which is right about far more of a graph that was never solved. Node 0 stays, and with it
+/// every component's first node. Single-threaded: same bytes.
 OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph);
 
 /// chi^2 of one edge at the optimised poses.

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Gauss-Newton by Ceres: Levenberg-Marquardt that starts with next to no damping, since a warm
+// start is close; Ceres shrinks the region by itself where a step fails.
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+
+#include <ceres/problem.h>
+#include <ceres/sized_cost_function.h>
+#include <ceres/solver.h>
+#include <glog/logging.h>
+
+#include <array>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "masked_mapper/optimization/edge_residual.hpp"
+#include "masked_mapper/pose_graph/dijkstra_projection.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using PoseBlock = std::array<double, 3>;
+
+class EdgeCost final : public ceres::SizedCostFunction<3, 3, 3> {
+ public:
+  explicit EdgeCost(const UncertainPose2& T_from_to) : residual_(T_from_to) {}
+
+  bool Evaluate(const double* const* poses, double* residual, double** jacobians) const override {
+    residual_.Evaluate(poses[0], poses[1], residual, jacobians ? jacobians[0] : nullptr,
+                       jacobians ? jacobians[1] : nullptr);
+    return true;
+  }
+
+ private:
+  EdgeResidual residual_;
+};
+
+// Ceres logs through glog, which writes to standard error unless told not to; a library is silent.
+class QuietCeres {
+ public:
+  QuietCeres() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietCeres() { FLAGS_minloglevel = before_; }
+  QuietCeres(const QuietCeres&) = delete;
+  QuietCeres& operator=(const QuietCeres&) = delete;
+
+ private:
+  int before_;
+};
+
+ceres::Solver::Options SolverOptions(const OptimizerOptions& options) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  solver.num_threads = 1;  // more may not repeat bit for bit
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.initial_trust_region_radius = 1e16;
+  solver.max_trust_region_radius = 1e32;
+  solver.jacobi_scaling = false;  // measured: all columns are of one kind, scaling only costs
+  solver.logging_type = ceres::SILENT;
+  return solver;
+}
+
+std::vector<PoseBlock> PosesOf(const PoseGraph& graph) {
+  std::vector<PoseBlock> poses;
+  poses.reserve(graph.nodes().size());
+  for (const Node& node : graph.nodes()) {
+    poses.push_back({node.T_world_robot.x, node.T_world_robot.y, node.T_world_robot.theta});
+  }
+  return poses;
+}
+
+double Chi2(const PoseGraph& graph, const std::deque<EdgeCost>& costs,
+            const std::vector<PoseBlock>& poses) {
+  double chi2 = 0.0;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const Edge& edge = graph.edges()[i];
+    const double* const ends[2] = {poses[static_cast<std::size_t>(edge.from)].data(),
+                                   poses[static_cast<std::size_t>(edge.to)].data()};
+    double residual[3];
+    costs[i].Evaluate(ends, residual, nullptr);
+    chi2 += residual[0] * residual[0] + residual[1] * residual[1] + residual[2] * residual[2];
+  }
+  return chi2;
+}
+
+// The lowest node of every connected component, in order: what the gauge is fixed to.
+std::vector<NodeId> FirstOfEachComponent(const PoseGraph& graph) {
+  std::vector<NodeId> first;
+  std::vector<bool> seen(graph.nodes().size(), false);
+  std::vector<NodeId> open;
+  for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
+    if (seen[i]) continue;
+    first.push_back(static_cast<NodeId>(i));
+    seen[i] = true;
+    open.push_back(static_cast<NodeId>(i));
+    while (!open.empty()) {
+      const NodeId node = open.back();
+      open.pop_back();
+      for (const EdgeId id : graph.EdgesOf(node)) {
+        const Edge& edge = graph.edges()[static_cast<std::size_t>(id)];
+        const NodeId next = edge.from == node ? edge.to : edge.from;
+        if (seen[static_cast<std::size_t>(next)]) continue;
+        seen[static_cast<std::size_t>(next)] = true;
+        open.push_back(next);
+      }
+    }
+  }
+  return first;
+}
+
+std::vector<PoseBlock> ProjectedPoses(const PoseGraph& graph, const std::vector<NodeId>& gauge) {
+  std::vector<PoseBlock> poses = PosesOf(graph);
+  for (const NodeId root : gauge) {
+    const Pose2 T_world_root = graph.nodes()[static_cast<std::size_t>(root)].T_world_robot;
+    for (const ProjectedNode& projected : DijkstraProjection(graph, root)) {
+      const Pose2 T = T_world_root * projected.T_source_node.mean;
+      poses[static_cast<std::size_t>(projected.node)] = {T.x, T.y, T.theta};
+    }
+  }
+  return poses;
+}
+
+struct Solution {
+  std::vector<PoseBlock> poses;
+  double chi2 = 0.0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+Solution SolveFrom(std::vector<PoseBlock> start, const OptimizerOptions& options,
+                   const PoseGraph& graph, std::deque<EdgeCost>& costs,
+                   const std::vector<NodeId>& gauge) {
+  const QuietCeres quiet;
+  Solution solution{std::move(start)};
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.disable_all_safety_checks = true;
+  ceres::Problem problem(ownership);
+  const auto block = [&](NodeId node) {
+    return solution.poses[static_cast<std::size_t>(node)].data();
+  };
+  // In the order of ids, so that the elimination order is the same every time.
+  for (PoseBlock& pose : solution.poses) problem.AddParameterBlock(pose.data(), 3);
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const Edge& edge = graph.edges()[i];
+    problem.AddResidualBlock(&costs[i], nullptr, block(edge.from), block(edge.to));
+  }
+  for (const NodeId fixed : gauge) problem.SetParameterBlockConstant(block(fixed));
+  ceres::Solver::Summary solved;
+  ceres::Solve(SolverOptions(options), &problem, &solved);
+  solution.chi2 = 2.0 * solved.final_cost;
+  solution.iterations = static_cast<int>(solved.iterations.size()) - 1;
+  solution.converged = solved.termination_type == ceres::CONVERGENCE;
+  return solution;
+}
+
+// Ours: poses whose residuals are on average ten times what the covariances promise may lie outside
+// the basin of the right minimum (a long loop that closes for the first time with its heading far
+// off).
+bool FitsPoorly(double chi2, std::size_t edges) {
+  constexpr double kPoorRatio = 100.0;
+  return chi2 > kPoorRatio * 3.0 * static_cast<double>(edges);
+}
+
+}  // namespace
+
+OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph) {
+  OptimizationSummary summary;
+  summary.converged = true;
+  if (graph.edges().empty()) return summary;
+
+  std::deque<EdgeCost> costs;  // Ceres holds pointers to them
+  for (const Edge& edge : graph.edges()) costs.emplace_back(edge.T_from_to);
+  const std::vector<NodeId> gauge = FirstOfEachComponent(graph);
+  std::vector<PoseBlock> poses = PosesOf(graph);
+  summary.initial_chi2 = Chi2(graph, costs, poses);
+
+  Solution solution;
+  const bool poor_start = FitsPoorly(summary.initial_chi2, costs.size());
+  if (poor_start) {
+    // The projection spreads over closures and odometry at once, by the surest paths.
+    solution = SolveFrom(ProjectedPoses(graph, gauge), options, graph, costs, gauge);
+  }
+  if (!poor_start || !solution.converged || FitsPoorly(solution.chi2, costs.size())) {
+    Solution warm = SolveFrom(std::move(poses), options, graph, costs, gauge);
+    warm.iterations += solution.iterations;
+    if (!poor_start || warm.chi2 < solution.chi2) solution = std::move(warm);
+  }
+
+  summary.final_chi2 = solution.chi2;
+  summary.iterations = solution.iterations;
+  summary.converged = solution.converged;
+  for (std::size_t i = 0; i < solution.poses.size(); ++i) {
+    const PoseBlock& pose = solution.poses[i];
+    graph.SetPose(static_cast<NodeId>(i), {pose[0], pose[1], WrapAngle(pose[2])});
+  }
+  return summary;
+}
+
+double EdgeChi2(const PoseGraph& graph, const Edge& edge) {
+  return EdgeResidual(edge.T_from_to)
+      .Chi2(graph.nodes()[static_cast<std::size_t>(edge.from)].T_world_robot,
+            graph.nodes()[static_cast<std::size_t>(edge.to)].T_world_robot);
+}
+
+}  // namespace masked_mapper
