@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The OctoMap of a building, filled from the grids of its floors: walls as columns, free space as a
+// slab. A free layer of one voxel cannot be pruned and makes trees of millions of nodes; a slab
+// that is a power of two thick and starts at a multiple of its thickness collapses into few large
+// cubes.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "masked_mapper/rendering/occupancy_grid.hpp"
+
+namespace octomap {
+class OcTree;
+}
+
+namespace masked_mapper {
+
+struct OctreeOptions {
+  double wall_height_m = 1.6;  ///< walls reach from the floor's elevation up to here
+  double free_height_m = 0.8;  ///< thickness of free space, rounded to a power of two of voxels
+};
+
+struct FloorLayer {
+  const OccupancyGrid* grid = nullptr;
+  double elevation = 0.0;  ///< m
+};
+
+/// A pruned tree whose voxels are the grids' cells: an occupied cell is a wall column that starts
+/// at the floor's elevation; a free cell is free in the first aligned slab at or above it (so less
+/// than `free_height_m` above it; inside the walls' height as long as walls are twice as high as
+/// the slab). Where floors overlap, a wall of one outvotes the free space of another. All grids
+/// have one resolution; empty ones are ignored. Throws InputError when the building reaches beyond
+/// what the tree's 16-bit keys can address (32768 voxels from the origin).
+std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
+                                             const OctreeOptions& options);
+
+}  // namespace masked_mapper
