@@ -6,7 +6,7 @@
 #include "masked_mapper/loop_closure/candidates.hpp"
 #include "masked_mapper/loop_closure/validator.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
-#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
@@ -23,7 +23,7 @@ struct NodeOptions {
 
 struct Options {
   LogOptions log;
-  DeadReckoningOptions odometry;
+  MotionOptions motion;
   NodeOptions nodes;
   MaskOptions masks;
   CandidateOptions candidates;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the robot moved: by wheels, by scans, or by both; and how sure that is since the last node.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/motion/scan_odometry.hpp"
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+enum class MotionSource {
+  kOdometry,  ///< wheels alone, as in the paper
+  kScans,     ///< scans alone: wheels are not looked at
+  kFused,     ///< wheels guess, scans correct
+};
+
+/// What a robot may do between two scans when no wheels tell.
+struct WheellessOptions {
+  double sigma_speed_m_per_s = 0.4;    ///< about the speed of the step before
+  double sigma_turn_deg_per_s = 40.0;  ///< about the turn of the step before
+};
+
+struct MotionOptions {
+  MotionSource source = MotionSource::kFused;
+  DeadReckoningOptions odometry;
+  ScanOdometryOptions scans;
+  WheellessOptions wheelless;
+};
+
+class MotionEstimator {
+ public:
+  explicit MotionEstimator(const MotionOptions& options);
+
+  /// Observations in order of stamps. The path moves at scans; readings between them gather.
+  void Observe(const OdometryReading& reading);
+  void Observe(const LaserScan& scan);
+  /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
+  void StartNode() { T_node_robot_ = UncertainPose2{}; }
+  /// The scene is another one (a floor was changed): the next scan is aligned to none before it.
+  void RestartScans() { scan_odometry_.Restart(); }
+
+  /// Pose at the scan observed last, along the path; frame `odom` is the robot's first pose.
+  const Pose2& T_odom_robot() const { return T_odom_robot_; }
+  /// Motion since the last node, with covariance in the node's frame.
+  const UncertainPose2& T_node_robot() const { return T_node_robot_; }
+
+ private:
+  UncertainPose2 StepWithoutWheels(double stamp) const;
+
+  MotionOptions options_;
+  DeadReckoning wheels_;  ///< since the scan before
+  ScanOdometry scan_odometry_;
+  std::optional<double> last_scan_stamp_;
+  UncertainPose2 last_step_;
+  double last_step_s_ = 0.0;
+  Pose2 T_odom_robot_;
+  UncertainPose2 T_node_robot_;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scan odometry: every scan that moved is aligned to a rolling local map of the scans before it,
+// held by what the wheels say. It makes the path between nodes good; it never closes a loop. The
+// paper takes its motion from wheels and a gyro; this is ours.
+#pragma once
+
+#include <optional>
+
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/scan_matching/local_map.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
+
+namespace masked_mapper {
+
+struct ScanOdometryOptions {
+  LocalMapOptions map;
+  double match_distance_m = 0.04;     ///< travel below which a scan is not matched: wheels suffice
+  double match_angle_deg = 0.5;       ///< and turn
+  double keyframe_distance_m = 0.15;  ///< travel from one scan in the local map to the next
+  double keyframe_angle_deg = 5.0;    ///< or turn
+  int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
+  double min_inlier_share = 0.5;      ///< below it other guesses are tried
+  double lost_inlier_share = 0.25;    ///< below it after all guesses the scan is not believed
+};
+
+class ScanOdometry {
+ public:
+  explicit ScanOdometry(const ScanOdometryOptions& options) : options_(options) {}
+
+  /// Motion since the scan before (or the first scan: identity), corrected. `T_last_now` is what
+  /// the wheels say it was; without wheels a guess with a covariance to match.
+  UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now);
+
+  /// The robot is somewhere else altogether: forget the local maps, go on from here.
+  void Restart();
+
+  /// Share of the last matched scan that agreed with the local map, 0-1.
+  double inlier_share() const { return inlier_share_; }
+
+ private:
+  void AddKeyframe(const ScanPoints& points);
+  Alignment AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
+                                    const Eigen::Matrix3d& prior_information) const;
+
+  ScanOdometryOptions options_;
+  Pose2 T_map_robot_;                    ///< of the scan seen last
+  std::optional<Pose2> T_map_keyframe_;  ///< of the scan added last
+  UncertainPose2 T_matched_robot_;       ///< by wheels since the scan matched last
+  Pose2 T_map_matched_;
+  std::optional<LocalMap> map_;       ///< matched against
+  std::optional<LocalMap> next_map_;  ///< grows until it is large enough to take over
+  double inlier_share_ = 1.0;
+  int lost_ = 0;  ///< scans in a row that were not believed
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A small map of a few recent scans, to which the next scan is aligned below the size of any cell.
+//
+// A normal-distributions map whose windows overlap: every cell knows the mean and covariance of the
+// points in the cells around it, so a point finds its distribution in one look-up, and walls stay
+// lines across cell borders. Points on a wall pull along its normal alone: a blank corridor says
+// nothing about the way along it, and the covariance tells so. The paper takes motion as given;
+// this is ours.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
+
+namespace masked_mapper {
+
+struct LocalMapOptions {
+  double cell_m = 0.15;         ///< size of a cell
+  int window_cells = 1;         ///< cells to each side that a distribution looks at
+  double reach_m = 40.0;        ///< points farther than this from the map's origin are left out
+  double point_sigma_m = 0.01;  ///< noise of a point, added to every distribution
+  double first_sigma_m = 0.15;  ///< the same in the first iteration, halved with each that follows
+  double outlier_sigmas = 3.0;  ///< distance at which a point has lost half of its say
+  double line_ratio = 0.1;      ///< smaller over larger variance, below which points form a line
+  int max_iterations = 15;
+  double covariance_inflation = 2.0;  ///< beams of one wall err together, not each on its own
+};
+
+struct Alignment {
+  Pose2 T_map_robot;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the scan alone, of (x, y, theta)
+  double inlier_share = 0.0;  ///< of the points that lie within the map's cells and agree, 0-1
+  int iterations = 0;
+  bool converged = false;
+};
+
+class LocalMap {
+ public:
+  /// Points will be kept within `reach_m` of `center_in_map`.
+  LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map);
+
+  void Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot);
+
+  /// Gauss-Newton from `T_map_robot_guess`, held by `prior_information` of the guess (zero: free).
+  /// Without a point in reach of the map: the guess, zero information, not converged.
+  Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                  const Eigen::Matrix3d& prior_information) const;
+
+  /// Share of the points that agree with the map at a pose, 0-1: a cheap score to compare guesses.
+  double Agreement(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+                   double sigma_m) const;
+
+  std::size_t scans() const { return scans_; }
+
+ private:
+  struct Moments {
+    double count = 0.0;
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
+  };
+  struct Distribution {
+    float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
+    float normal_x = 0.0F, normal_y = 0.0F;  ///< direction of the smaller variance
+    float small = 0.0F, large = 0.0F;        ///< variances, m^2
+    bool is_line = false;
+    bool is_known = false;
+  };
+
+  int Index(double x, double y) const;
+  void UpdateDistribution(int column, int row);
+  double Step(const ScanPoints& points, const Pose2& T_map_robot, double sigma_m,
+              Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const;
+
+  LocalMapOptions options_;
+  Eigen::Vector2d corner_;                  ///< of cell (0, 0), in map
+  int width_ = 0;                           ///< cells to a side
+  std::vector<std::int32_t> slot_of_cell_;  ///< -1: nothing near
+  std::vector<Moments> moments_;
+  std::vector<Distribution> distributions_;
+  std::size_t scans_ = 0;
+};
+
+}  // namespace masked_mapper

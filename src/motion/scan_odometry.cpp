@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/scan_odometry.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace masked_mapper {
+namespace {
+
+/// Information of (x, y, theta) in the map frame, of a motion whose covariance is in the frame of
+/// its start. A floor keeps motions that the wheels call perfect from outvoting every scan.
+Eigen::Matrix3d PriorInformation(const Pose2& T_map_start, const UncertainPose2& motion) {
+  const double c = std::cos(T_map_start.theta);
+  const double s = std::sin(T_map_start.theta);
+  Eigen::Matrix3d rotation;
+  rotation << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  Eigen::Matrix3d covariance = rotation * motion.covariance * rotation.transpose();
+  covariance.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);
+  return covariance.inverse();
+}
+
+double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
+
+}  // namespace
+
+void ScanOdometry::Restart() {
+  map_.reset();
+  next_map_.reset();
+  T_map_keyframe_.reset();
+  T_matched_robot_ = UncertainPose2{};
+  T_map_matched_ = T_map_robot_;
+  lost_ = 0;
+}
+
+Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
+                                                const Eigen::Matrix3d& prior_information) const {
+  Alignment best = map_->Align(points, T_map_guess, prior_information);
+  if (best.inlier_share >= options_.min_inlier_share) return best;
+  // Wheels slip most in turns: guesses around the predicted heading, the best refined.
+  for (const double turn_deg : {-4.0, 4.0, -8.0, 8.0, -12.0, 12.0}) {
+    Pose2 guess = T_map_guess;
+    guess.theta = WrapAngle(guess.theta + DegToRad(turn_deg));
+    const Alignment other =
+        map_->Align(points, guess, Eigen::Matrix3d::Identity() * 1e-3 + 0.05 * prior_information);
+    if (other.inlier_share > best.inlier_share + 0.05) best = other;
+  }
+  return best;
+}
+
+void ScanOdometry::AddKeyframe(const ScanPoints& points) {
+  if (!map_) map_.emplace(options_.map, T_map_robot_.Translation());
+  map_->Add(points, T_map_robot_);
+  if (next_map_) next_map_->Add(points, T_map_robot_);
+  const auto full = static_cast<std::size_t>(options_.keyframes_per_map);
+  if (!next_map_ && map_->scans() >= full) {
+    next_map_.emplace(options_.map, T_map_robot_.Translation());
+    next_map_->Add(points, T_map_robot_);
+  } else if (next_map_ && next_map_->scans() >= full) {
+    map_ = std::move(next_map_);
+    next_map_.emplace(options_.map, T_map_robot_.Translation());
+    next_map_->Add(points, T_map_robot_);
+  }
+  T_map_keyframe_ = T_map_robot_;
+}
+
+UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now) {
+  const ScanPoints::ConstPtr points = PointsInRobot(scan);
+  const Pose2 T_map_last = T_map_robot_;
+  UncertainPose2 step = T_last_now;
+  if (!map_) {
+    T_map_robot_ = T_map_robot_ * T_last_now.mean;
+    T_map_matched_ = T_map_robot_;
+    if (!points->empty()) AddKeyframe(*points);
+    return step;
+  }
+  T_matched_robot_ = T_matched_robot_ * T_last_now;
+  T_map_robot_ = T_map_matched_ * T_matched_robot_.mean;
+  const double travelled = Distance(T_map_matched_, T_map_robot_);
+  const double turned = Turn(T_map_matched_, T_map_robot_);
+  // A wheel that says "at rest" is believed; a guess without wheels is not.
+  const bool is_sure = T_matched_robot_.covariance.topLeftCorner<2, 2>().trace() <
+                       options_.match_distance_m * options_.match_distance_m;
+  if (is_sure && travelled < options_.match_distance_m &&
+      turned < DegToRad(options_.match_angle_deg)) {
+    return step;
+  }
+  const Eigen::Matrix3d prior = PriorInformation(T_map_matched_, T_matched_robot_);
+  const Alignment aligned = AlignFromSeveralGuesses(*points, T_map_robot_, prior);
+  inlier_share_ = aligned.inlier_share;
+  if (aligned.inlier_share >= options_.lost_inlier_share) {
+    // Scans within one keyframe's distance see the same map with the same errors: a short step is
+    // worth its share of the alignment's covariance, a long one all of it.
+    const double share = std::min(1.0, travelled / options_.keyframe_distance_m +
+                                           turned / DegToRad(options_.keyframe_angle_deg));
+    const Eigen::Matrix3d covariance_in_map =
+        (aligned.information / std::max(share, 1e-3) + prior).inverse();
+    T_map_robot_ = aligned.T_map_robot;
+    const double c = std::cos(T_map_last.theta);
+    const double s = std::sin(T_map_last.theta);
+    Eigen::Matrix3d rotation;
+    rotation << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
+    step.mean = Between(T_map_last, T_map_robot_);
+    step.covariance = rotation * covariance_in_map * rotation.transpose();
+    lost_ = 0;
+  } else if (++lost_ >= 5) {
+    // Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
+    map_.reset();
+    next_map_.reset();
+    lost_ = 0;
+    if (!points->empty()) AddKeyframe(*points);
+  }
+  T_map_matched_ = T_map_robot_;
+  T_matched_robot_ = UncertainPose2{};
+  if (lost_ == 0 &&
+      (!T_map_keyframe_ ||
+       Distance(*T_map_keyframe_, T_map_robot_) >= options_.keyframe_distance_m ||
+       Turn(*T_map_keyframe_, T_map_robot_) >= DegToRad(options_.keyframe_angle_deg))) {
+    AddKeyframe(*points);
+  }
+  return step;
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/scan_matching/local_map.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace masked_mapper {
+namespace {
+
+double Square(double value) { return value * value; }
+
+}  // namespace
+
+LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
+    : options_(options) {
+  width_ = 2 * static_cast<int>(std::ceil(options.reach_m / options.cell_m)) + 1;
+  corner_ = center_in_map.array() - 0.5 * width_ * options.cell_m;
+  slot_of_cell_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), -1);
+}
+
+int LocalMap::Index(double x, double y) const {
+  const double column = std::floor((x - corner_.x()) / options_.cell_m);
+  const double row = std::floor((y - corner_.y()) / options_.cell_m);
+  // A margin of a window, so that neighbours need no check of their own.
+  const double margin = options_.window_cells;
+  if (!(column >= margin && row >= margin && column < width_ - margin && row < width_ - margin)) {
+    return -1;
+  }
+  return static_cast<int>(row) * width_ + static_cast<int>(column);
+}
+
+void LocalMap::Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot) {
+  const double c = std::cos(T_map_robot.theta);
+  const double s = std::sin(T_map_robot.theta);
+  const int window = options_.window_cells;
+  std::vector<int> touched;
+  for (const pcl::PointXY& point : points_in_robot) {
+    const double x = T_map_robot.x + c * point.x - s * point.y;
+    const double y = T_map_robot.y + s * point.x + c * point.y;
+    const int index = Index(x, y);
+    if (index < 0) continue;
+    std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(index)];
+    if (slot < 0) {
+      slot = static_cast<std::int32_t>(moments_.size());
+      moments_.emplace_back();
+      distributions_.emplace_back();
+    }
+    const int column = index % width_;
+    const int row = index / width_;
+    const double dx = x - (corner_.x() + (column + 0.5) * options_.cell_m);
+    const double dy = y - (corner_.y() + (row + 0.5) * options_.cell_m);
+    Moments& moments = moments_[static_cast<std::size_t>(slot)];
+    moments.count += 1.0;
+    moments.x += dx;
+    moments.y += dy;
+    moments.xx += dx * dx;
+    moments.xy += dx * dy;
+    moments.yy += dy * dy;
+    touched.push_back(index);
+  }
+  std::vector<int> changed;
+  changed.reserve(touched.size() * 4);
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  for (const int index : touched) {
+    for (int dy = -window; dy <= window; ++dy) {
+      for (int dx = -window; dx <= window; ++dx) changed.push_back(index + dy * width_ + dx);
+    }
+  }
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  for (const int index : changed) UpdateDistribution(index % width_, index / width_);
+  ++scans_;
+}
+
+void LocalMap::UpdateDistribution(int column, int row) {
+  const int window = options_.window_cells;
+  Moments sum;
+  for (int dy = -window; dy <= window; ++dy) {
+    for (int dx = -window; dx <= window; ++dx) {
+      const int neighbour_column = column + dx;
+      const int neighbour_row = row + dy;
+      if (neighbour_column < 0 || neighbour_row < 0 || neighbour_column >= width_ ||
+          neighbour_row >= width_) {
+        continue;
+      }
+      const std::int32_t slot =
+          slot_of_cell_[static_cast<std::size_t>(neighbour_row * width_ + neighbour_column)];
+      if (slot < 0) continue;
+      const Moments& m = moments_[static_cast<std::size_t>(slot)];
+      if (m.count == 0.0) continue;
+      const double ox = dx * options_.cell_m;
+      const double oy = dy * options_.cell_m;
+      sum.count += m.count;
+      sum.x += m.x + m.count * ox;
+      sum.y += m.y + m.count * oy;
+      sum.xx += m.xx + 2.0 * ox * m.x + m.count * ox * ox;
+      sum.xy += m.xy + ox * m.y + oy * m.x + m.count * ox * oy;
+      sum.yy += m.yy + 2.0 * oy * m.y + m.count * oy * oy;
+    }
+  }
+  std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(row * width_ + column)];
+  if (slot < 0) {
+    slot = static_cast<std::int32_t>(moments_.size());
+    moments_.emplace_back();
+    distributions_.emplace_back();
+  }
+  Distribution& d = distributions_[static_cast<std::size_t>(slot)];
+  const double mx = sum.x / sum.count;
+  const double my = sum.y / sum.count;
+  d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
+  d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
+  const double xx = sum.xx / sum.count - mx * mx;
+  const double xy = sum.xy / sum.count - mx * my;
+  const double yy = sum.yy / sum.count - my * my;
+  const double mean = 0.5 * (xx + yy);
+  const double spread = std::hypot(0.5 * (xx - yy), xy);
+  const double small = std::max(0.0, mean - spread);
+  const double large = mean + spread;
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the larger variance
+  d.normal_x = static_cast<float>(-std::sin(angle));
+  d.normal_y = static_cast<float>(std::cos(angle));
+  d.small = static_cast<float>(small);
+  d.large = static_cast<float>(large);
+  // Three points at the least, and spread over more than one cell: else a line is a guess.
+  d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
+              large > Square(0.5 * options_.cell_m);
+  d.is_known = sum.count >= 2.0;
+}
+
+double LocalMap::Step(const ScanPoints& points, const Pose2& T_map_robot, double sigma_m,
+                      Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const {
+  const double c = std::cos(T_map_robot.theta);
+  const double s = std::sin(T_map_robot.theta);
+  const double noise = Square(sigma_m);
+  const double outlier = 1.0 / Square(options_.outlier_sigmas);
+  double inliers = 0.0;
+  double h00 = 0, h01 = 0, h02 = 0, h11 = 0, h12 = 0, h22 = 0, g0 = 0, g1 = 0, g2 = 0;
+  for (const pcl::PointXY& point : points) {
+    const double rx = c * point.x - s * point.y;
+    const double ry = s * point.x + c * point.y;
+    const int index = Index(T_map_robot.x + rx, T_map_robot.y + ry);
+    if (index < 0) continue;
+    const std::int32_t slot = slot_of_cell_[static_cast<std::size_t>(index)];
+    if (slot < 0) continue;
+    const Distribution& d = distributions_[static_cast<std::size_t>(slot)];
+    if (!d.is_known) continue;
+    const double ex = T_map_robot.x + rx - d.mean_x;
+    const double ey = T_map_robot.y + ry - d.mean_y;
+    const double nx = d.normal_x;
+    const double ny = d.normal_y;
+    const double across = nx * ex + ny * ey;
+    const double w_across = 1.0 / (d.small + noise);
+    const double along = -ny * ex + nx * ey;
+    const double w_along = d.is_line ? 0.0 : 1.0 / (d.large + noise);
+    const double chi2 = w_across * across * across + w_along * along * along;
+    const double weight = 1.0 / Square(1.0 + chi2 * outlier);
+    inliers += weight;
+    // d(point)/d(x, y, theta) = [1 0 -ry; 0 1 rx], projected on the normal and on the tangent.
+    const double a2 = -nx * ry + ny * rx;
+    const double b2 = ny * ry + nx * rx;
+    const double wa = weight * w_across;
+    const double wb = weight * w_along;
+    h00 += wa * nx * nx + wb * ny * ny;
+    h01 += wa * nx * ny - wb * ny * nx;
+    h02 += wa * nx * a2 - wb * ny * b2;
+    h11 += wa * ny * ny + wb * nx * nx;
+    h12 += wa * ny * a2 + wb * nx * b2;
+    h22 += wa * a2 * a2 + wb * b2 * b2;
+    g0 += wa * nx * across - wb * ny * along;
+    g1 += wa * ny * across + wb * nx * along;
+    g2 += wa * a2 * across + wb * b2 * along;
+  }
+  hessian << h00, h01, h02, h01, h11, h12, h02, h12, h22;
+  gradient << g0, g1, g2;
+  return inliers;
+}
+
+double LocalMap::Agreement(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+                           double sigma_m) const {
+  if (points_in_robot.empty()) return 0.0;
+  Eigen::Matrix3d hessian;
+  Eigen::Vector3d gradient;
+  return Step(points_in_robot, T_map_robot, sigma_m, hessian, gradient) /
+         static_cast<double>(points_in_robot.size());
+}
+
+Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                          const Eigen::Matrix3d& prior_information) const {
+  Alignment result;
+  result.T_map_robot = T_map_robot_guess;
+  if (points_in_robot.empty()) return result;
+  double sigma = options_.first_sigma_m;
+  Eigen::Matrix3d hessian;
+  Eigen::Vector3d gradient;
+  for (; result.iterations < options_.max_iterations; ++result.iterations) {
+    Pose2& pose = result.T_map_robot;
+    Step(points_in_robot, pose, sigma, hessian, gradient);
+    // The scan's own weight shrinks by the inflation, so that the prior is weighed against what the
+    // scan really knows.
+    const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
+                                     WrapAngle(pose.theta - T_map_robot_guess.theta));
+    const Eigen::Matrix3d total = hessian / options_.covariance_inflation + prior_information;
+    const Eigen::LDLT<Eigen::Matrix3d> factor(total);
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-9)) return result;
+    const Eigen::Vector3d step =
+        -factor.solve(gradient / options_.covariance_inflation + prior_information * from_guess);
+    pose = {pose.x + step.x(), pose.y + step.y(), WrapAngle(pose.theta + step.z())};
+    const bool is_fine = sigma <= options_.point_sigma_m;
+    if (is_fine && step.head<2>().norm() < 5e-4 && std::abs(step.z()) < 1e-4) {
+      result.converged = true;
+      break;
+    }
+    sigma = std::max(options_.point_sigma_m, 0.5 * sigma);
+  }
+  result.inlier_share =
+      Step(points_in_robot, result.T_map_robot, options_.point_sigma_m, hessian, gradient) /
+      static_cast<double>(points_in_robot.size());
+  result.information = hessian / options_.covariance_inflation;
+  return result;
+}
+
+}  // namespace masked_mapper

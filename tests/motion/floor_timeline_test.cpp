@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/floor_timeline.hpp"
+
+#include <gtest/gtest.h>
+
+namespace masked_mapper {
+namespace {
+
+TEST(FloorTimeline, WithoutAnythingKnownThereIsOneFloorForEver) {
+  const FloorTimeline timeline;
+  for (const double stamp : {-1e9, 0.0, 1e12}) {
+    EXPECT_EQ(timeline.At(stamp).level, 0U);
+    EXPECT_FALSE(timeline.At(stamp).in_transit);
+  }
+}
+
+TEST(FloorTimeline, IntervalsBeginAtTheirStart) {
+  FloorTimeline timeline;
+  timeline.levels.resize(2);
+  timeline.intervals = {{10.0, 0, false}, {20.0, 0, true}, {30.0, 1, false}};
+  EXPECT_FALSE(timeline.At(5.0).in_transit);
+  EXPECT_FALSE(timeline.At(19.999).in_transit);
+  EXPECT_TRUE(timeline.At(20.0).in_transit);
+  EXPECT_EQ(timeline.At(29.0).level, 0U);
+  EXPECT_EQ(timeline.At(30.0).level, 1U);
+  EXPECT_EQ(timeline.At(1e9).level, 1U);
+}
+
+}  // namespace
+}  // namespace masked_mapper

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/motion_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scan_matching/box_scene.hpp"
+
+namespace masked_mapper {
+namespace {
+
+// A drive through a furnished room: 0.06 m and up to 3.5 degrees a scan, five scans a second.
+std::vector<Pose2> Drive(int steps) {
+  std::vector<Pose2> poses = {Pose2{2.0, 2.5, 0.0}};
+  for (int i = 1; i < steps; ++i) {
+    poses.push_back(poses.back() * Pose2{0.06, 0.0, DegToRad(i % 60 < 30 ? 3.5 : 2.5)});
+  }
+  return poses;
+}
+
+Pose2 RunAll(MotionSource source, bool give_odometry, double heading_error_deg_per_step,
+             const std::vector<Pose2>& truth) {
+  MotionOptions options;
+  options.source = source;
+  MotionEstimator motion(options);
+  const BoxScene room = FurnishedRoom();
+  Pose2 odometry;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (i > 0) {
+      Pose2 step = Between(truth[i - 1], truth[i]);
+      step.theta += DegToRad(heading_error_deg_per_step);
+      odometry = odometry * step;
+    }
+    LaserScan scan = room.Scan(truth[i], 361, 270.0);
+    scan.stamp = 0.2 * static_cast<double>(i);
+    if (give_odometry) scan.T_odom_robot = odometry;
+    motion.Observe(scan);
+  }
+  return motion.T_odom_robot();
+}
+
+TEST(MotionEstimator, WheelsAloneReproduceTheWheels) {
+  const std::vector<Pose2> truth = Drive(200);
+  const Pose2 end = RunAll(MotionSource::kOdometry, true, 0.0, truth);
+  const Pose2 expected = Between(truth.front(), truth.back());
+  EXPECT_NEAR(Distance(end, expected), 0.0, 1e-9);
+}
+
+TEST(MotionEstimator, FusedUndoesADriftOfHalfADegreeAStep) {
+  const std::vector<Pose2> truth = Drive(200);
+  const Pose2 expected = Between(truth.front(), truth.back());
+  const Pose2 wheels = RunAll(MotionSource::kOdometry, true, 0.5, truth);
+  EXPECT_GT(std::abs(WrapAngle(wheels.theta - expected.theta)), DegToRad(60.0));
+  const Pose2 end = RunAll(MotionSource::kFused, true, 0.5, truth);
+  EXPECT_LT(Distance(end, expected), 0.05) << "m";
+  EXPECT_LT(RadToDeg(std::abs(WrapAngle(end.theta - expected.theta))), 0.5) << "deg";
+}
+
+TEST(MotionEstimator, ScansAloneNeedNoWheels) {
+  const std::vector<Pose2> truth = Drive(200);
+  const Pose2 expected = Between(truth.front(), truth.back());
+  const Pose2 end = RunAll(MotionSource::kScans, false, 0.0, truth);
+  EXPECT_LT(Distance(end, expected), 0.05) << "m";
+  EXPECT_LT(RadToDeg(std::abs(WrapAngle(end.theta - expected.theta))), 0.5) << "deg";
+}
+
+TEST(MotionEstimator, ScansWithoutReturnsLeaveTheWheels) {
+  MotionOptions options;
+  MotionEstimator motion(options);
+  for (int i = 0; i < 20; ++i) {
+    LaserScan scan;
+    scan.stamp = 0.2 * i;
+    scan.max_range = 30.0F;
+    scan.angle_step = 0.01;
+    scan.ranges.assign(100, kNoReturn);
+    scan.T_odom_robot = Pose2{0.1 * i, 0.0, 0.0};
+    motion.Observe(scan);
+  }
+  EXPECT_NEAR(motion.T_odom_robot().x, 1.9, 1e-9);
+}
+
+}  // namespace
+}  // namespace masked_mapper

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/scan_matching/local_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "scan_matching/box_scene.hpp"
+
+namespace masked_mapper {
+namespace {
+
+TEST(LocalMap, RecoversKnownPosesFromDisturbedGuesses) {
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(11);
+  LocalMap map({}, {3.0, 3.0});
+  for (int i = 0; i < 10; ++i) {
+    const Pose2 pose{2.0 + 0.15 * i, 2.5, 0.03 * i};
+    map.Add(*PointsInRobot(room.Scan(pose, 361, 270.0, &random)), pose);
+  }
+  std::uniform_real_distribution<double> shift(-0.12, 0.12);
+  std::uniform_real_distribution<double> turn(-4.0, 4.0);
+  double worst_m = 0.0;
+  double worst_deg = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const Pose2 truth{3.0 + shift(random), 2.7 + shift(random), 0.2 + DegToRad(turn(random))};
+    const Pose2 guess{truth.x + shift(random), truth.y + shift(random),
+                      truth.theta + DegToRad(turn(random))};
+    const Alignment aligned = map.Align(*PointsInRobot(room.Scan(truth, 361, 270.0, &random)),
+                                        guess, Eigen::Matrix3d::Zero());
+    EXPECT_TRUE(aligned.converged);
+    EXPECT_GT(aligned.inlier_share, 0.7);
+    worst_m = std::max(worst_m, Distance(aligned.T_map_robot, truth));
+    worst_deg =
+        std::max(worst_deg, RadToDeg(std::abs(WrapAngle(aligned.T_map_robot.theta - truth.theta))));
+  }
+  EXPECT_LT(worst_m, 0.02) << "m";
+  EXPECT_LT(worst_deg, 0.3) << "deg";
+}
+
+TEST(LocalMap, BlankCorridorSaysNothingOfTheWayAlongIt) {
+  const BoxScene corridor = BlankCorridor();
+  std::mt19937 random(5);
+  LocalMap map({}, {0.0, 0.0});
+  for (int i = 0; i < 10; ++i) {
+    const Pose2 pose{0.15 * i, 0.1, 0.02};
+    map.Add(*PointsInRobot(corridor.Scan(pose, 361, 270.0, &random)), pose);
+  }
+  const Pose2 truth{1.6, 0.15, 0.0};
+  const Pose2 guess{truth.x + 0.08, truth.y + 0.05, 0.03};
+  // Wheels that are good to 5 cm and 5 degrees.
+  const Eigen::Matrix3d prior =
+      Eigen::Vector3d(1.0 / 0.0025, 1.0 / 0.0025, 1.0 / 0.0076).asDiagonal();
+  const Alignment aligned =
+      map.Align(*PointsInRobot(corridor.Scan(truth, 361, 270.0, &random)), guess, prior);
+  EXPECT_NEAR(aligned.T_map_robot.y, truth.y, 0.01) << "m, across";
+  EXPECT_NEAR(aligned.T_map_robot.theta, truth.theta, DegToRad(0.3)) << "rad";
+  EXPECT_NEAR(aligned.T_map_robot.x, guess.x, 0.02) << "m: the wheels rule along the corridor";
+  const Eigen::Matrix3d covariance = (aligned.information + prior).inverse();
+  EXPECT_GT(std::sqrt(covariance(0, 0)), 8.0 * std::sqrt(covariance(1, 1)));
+}
+
+TEST(LocalMap, CovarianceIsHonest) {
+  // Errors of many noisy alignments against one map, in sigmas: neither boasting nor useless.
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(23);
+  LocalMap map({}, {3.0, 3.0});
+  for (int i = 0; i < 10; ++i) {
+    const Pose2 pose{2.0 + 0.15 * i, 2.5, 0.03 * i};
+    map.Add(*PointsInRobot(room.Scan(pose, 361, 270.0, &random)), pose);
+  }
+  double chi2 = 0.0;
+  const int trials = 200;
+  for (int i = 0; i < trials; ++i) {
+    const Pose2 truth{2.5 + 0.005 * i, 2.6, 0.1};
+    const Alignment aligned = map.Align(*PointsInRobot(room.Scan(truth, 361, 270.0, &random)),
+                                        truth, Eigen::Matrix3d::Zero());
+    const Eigen::Vector3d error(aligned.T_map_robot.x - truth.x, aligned.T_map_robot.y - truth.y,
+                                WrapAngle(aligned.T_map_robot.theta - truth.theta));
+    chi2 += error.dot(aligned.information * error) / trials;
+  }
+  EXPECT_LT(chi2, 3.0 * 1.5);
+  EXPECT_GT(chi2, 3.0 * 0.02);
+}
+
+TEST(LocalMap, NothingInReachLeavesTheGuess) {
+  const LocalMap empty({}, {0.0, 0.0});
+  const Pose2 guess{1.0, 2.0, 0.5};
+  const ScanPoints::ConstPtr points = PointsInRobot(FurnishedRoom().Scan({3, 3, 0}, 90, 180.0));
+  const Alignment aligned = empty.Align(*points, guess, Eigen::Matrix3d::Zero());
+  EXPECT_FALSE(aligned.converged);
+  EXPECT_EQ(aligned.T_map_robot.x, guess.x);
+  EXPECT_EQ(aligned.inlier_share, 0.0);
+  EXPECT_EQ(empty.Align(ScanPoints(), guess, Eigen::Matrix3d::Zero()).inlier_share, 0.0);
+}
+
+TEST(LocalMap, FarAndMeaninglessPointsAreLeftOut) {
+  LocalMap map({}, {0.0, 0.0});
+  ScanPoints points;
+  for (const float x : {1e30F, -1e30F, 50.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    pcl::PointXY point;
+    point.x = x;
+    point.y = 0.0F;
+    points.push_back(point);
+  }
+  map.Add(points, {});
+  EXPECT_EQ(map.Align(points, {}, Eigen::Matrix3d::Identity()).inlier_share, 0.0);
+}
+
+}  // namespace
+}  // namespace masked_mapper
