@@ -11,12 +11,14 @@
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "masked_mapper/scan_matching/refine_match.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 
 struct MatcherOptions {
   LookupTableOptions table;
+  RefineOptions refine;
   double min_score = 0.425;      ///< 0-1, the paper's MinScore
   double window_sigmas = 3.0;    ///< half-width of the search window, in sigmas of the guess
   double min_window_m = 0.3;     ///< half-width, m

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <list>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "masked_mapper/scan_matching/correlative_search.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using TablePtr = std::shared_ptr<const LookupTable>;
+
+// Half of the search window in steps. A deviation that is not a number asks for the largest window.
+std::int32_t HalfWindow(double variance, double sigmas, double smallest, double largest,
+                        double step) {
+  const double wanted = sigmas * std::sqrt(variance);
+  const double half = wanted < largest ? std::max(wanted, smallest) : largest;
+  return static_cast<std::int32_t>(std::ceil(half / step - 1e-9));
+}
+
+SearchGrid GridFor(const UncertainPose2& guess, const MatcherOptions& options) {
+  SearchGrid grid;
+  grid.T_reference_query_guess = guess.mean;
+  grid.resolution_m = options.table.resolution_m;
+  grid.angle_step = DegToRad(options.angle_step_deg);
+  const auto half_m = [&](double variance) {
+    return HalfWindow(variance, options.window_sigmas, options.min_window_m, options.max_window_m,
+                      grid.resolution_m);
+  };
+  grid.half_x = half_m(guess.covariance(0, 0));
+  grid.half_y = half_m(guess.covariance(1, 1));
+  grid.half_angle =
+      HalfWindow(guess.covariance(2, 2), options.window_sigmas, DegToRad(options.min_window_deg),
+                 DegToRad(options.max_window_deg), grid.angle_step);
+  return grid;
+}
+
+// Calls work(0) ... work(count - 1), each once, on up to `threads` threads.
+void ForEach(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+  const std::size_t workers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+  if (workers <= 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> errors(workers);
+  const auto run = [&](std::size_t worker) {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      errors[worker] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> pool;
+  for (std::size_t worker = 1; worker < workers; ++worker) pool.emplace_back(run, worker);
+  run(0);
+  for (std::thread& thread : pool) thread.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+// The tables of the scans matched last, within a budget of memory.
+class TableCache {
+ public:
+  explicit TableCache(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
+
+  TablePtr Find(std::int64_t key) {
+    const auto found = entries_.find(key);
+    if (found == entries_.end()) return nullptr;
+    order_.splice(order_.begin(), order_, found->second.place);
+    return found->second.table;
+  }
+
+  void Insert(std::int64_t key, TablePtr table) {
+    bytes_ += table->MemoryBytes();
+    order_.push_front(key);
+    entries_[key] = {std::move(table), order_.begin()};
+    while (bytes_ > budget_bytes_) {
+      const auto oldest = entries_.find(order_.back());
+      bytes_ -= oldest->second.table->MemoryBytes();
+      entries_.erase(oldest);
+      order_.pop_back();
+    }
+  }
+
+ private:
+  struct Entry {
+    TablePtr table;
+    std::list<std::int64_t>::iterator place;
+  };
+
+  std::size_t budget_bytes_;
+  std::size_t bytes_ = 0;
+  std::list<std::int64_t> order_;  // most recently used first
+  std::map<std::int64_t, Entry> entries_;
+};
+
+}  // namespace
+
+class JointMatcher::Impl {
+ public:
+  explicit Impl(const MatcherOptions& options)
+      : options_(options),
+        kernels_(options.table),
+        tables_(options.table_memory_mib * std::size_t{1024 * 1024}) {}
+
+  std::vector<MatchResult> Match(const std::vector<MatchPair>& pairs) {
+    const std::vector<TablePtr> tables = TablesOf(pairs);
+    std::map<const ScanPoints*, std::vector<Eigen::Vector2d>> thinned;
+    std::vector<SearchProblem> problems;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const ScanPoints* points = pairs[i].points_in_query.get();
+      const auto [query, is_new] = thinned.try_emplace(points);
+      if (is_new) {
+        query->second = ThinPoints(*points, options_.point_spacing_m, options_.table.max_range_m);
+      }
+      SearchProblem problem;
+      problem.table = tables[i].get();
+      problem.points_in_query = &query->second;
+      problem.grid = GridFor(pairs[i].T_reference_query_guess, options_);
+      problem.prior_root = PriorRoot(pairs[i].T_reference_query_guess.covariance, problem.grid);
+      problem.prior_weight = options_.prior_weight;
+      problem.min_score = options_.min_score;
+      problems.push_back(problem);
+    }
+    return Solve(pairs, problems);
+  }
+
+ private:
+  std::vector<TablePtr> TablesOf(const std::vector<MatchPair>& pairs) {
+    std::map<std::int64_t, TablePtr> needed;
+    std::vector<const MatchPair*> missing;
+    for (const MatchPair& pair : pairs) {
+      const auto [entry, is_new] = needed.try_emplace(pair.reference_key);
+      if (!is_new) continue;
+      entry->second = tables_.Find(pair.reference_key);
+      if (!entry->second) missing.push_back(&pair);
+    }
+    std::vector<TablePtr> made(missing.size());
+    ForEach(missing.size(), options_.threads, [&](std::size_t i) {
+      made[i] = std::make_shared<const LookupTable>(*missing[i]->points_in_reference,
+                                                    options_.table, kernels_);
+    });
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      needed[missing[i]->reference_key] = made[i];
+      tables_.Insert(missing[i]->reference_key, made[i]);
+    }
+    std::vector<TablePtr> tables;
+    for (const MatchPair& pair : pairs) tables.push_back(needed[pair.reference_key]);
+    return tables;
+  }
+
+  // Each thread searches its share of the pairs in a queue of its own; with one thread that is one
+  // queue over all pairs. No pair's result depends on another's, so the shares do not matter.
+  std::vector<MatchResult> Solve(const std::vector<MatchPair>& pairs,
+                                 const std::vector<SearchProblem>& problems) {
+    const std::size_t shares =
+        std::min(problems.size(), static_cast<std::size_t>(std::max(options_.threads, 1)));
+    std::vector<MatchResult> results(pairs.size());
+    ForEach(shares, options_.threads, [&](std::size_t share) {
+      std::vector<SearchProblem> mine;
+      for (std::size_t i = share; i < problems.size(); i += shares) mine.push_back(problems[i]);
+      const std::vector<SearchResult> found = SearchJointly(mine);
+      for (std::size_t k = 0; k < mine.size(); ++k) {
+        const std::size_t i = share + k * shares;
+        results[i] = Refine(pairs[i], mine[k], found[k]);
+      }
+    });
+    return results;
+  }
+
+  MatchResult Refine(const MatchPair& pair, const SearchProblem& problem,
+                     const SearchResult& found) const {
+    MatchResult result;
+    result.score = found.score;
+    result.T_reference_query = pair.T_reference_query_guess;
+    if (!found.found) return result;
+    result.outcome = MatchOutcome::kMatched;
+    const RefinedMatch refined = RefineMatch(*problem.table, *problem.points_in_query,
+                                             problem.grid.At(found.best), options_.refine);
+    result.T_reference_query.mean = refined.T_reference_query.mean;
+    result.T_reference_query.covariance = ResponseCovariance(
+        *problem.table, *problem.points_in_query, refined.T_reference_query.mean, options_.refine);
+    return result;
+  }
+
+  MatcherOptions options_;
+  BlurKernels kernels_;
+  TableCache tables_;
+};
+
+JointMatcher::JointMatcher(const MatcherOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
+
+JointMatcher::~JointMatcher() = default;
+
+std::vector<MatchResult> JointMatcher::Match(const std::vector<MatchPair>& pairs) {
+  return impl_->Match(pairs);
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/scan_matching/refine_match.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace masked_mapper {
+namespace {
+
+// The table at a position, with its first and second derivatives per cell.
+struct Surface {
+  double value = 0.0;
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+};
+
+struct SplineWeights {
+  std::array<double, 4> value;
+  std::array<double, 4> first;
+  std::array<double, 4> second;
+};
+
+SplineWeights CubicWeights(double t) {
+  const double u = 1.0 - t;
+  return {{u * u * u / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+           (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0, t * t * t / 6.0},
+          {-0.5 * u * u, 1.5 * t * t - 2.0 * t, -1.5 * u * u + 2.0 * u, 0.5 * t * t},
+          {u, 3.0 * t - 2.0, 3.0 * u - 2.0, t}};
+}
+
+// `x`, `y` in cells; the value of a cell stands at its centre.
+bool ReadSurface(const LookupTable::Level& cells, double x, double y, Surface* surface) {
+  x -= cells.x0 + 0.5;
+  y -= cells.y0 + 0.5;
+  if (!(x > -4.0 && y > -4.0 && x < cells.width + 4.0 && y < cells.height + 4.0)) return false;
+  const double column = std::floor(x);
+  const double row = std::floor(y);
+  const SplineWeights wx = CubicWeights(x - column);
+  const SplineWeights wy = CubicWeights(y - row);
+  const std::uint8_t* from = cells.data + (static_cast<std::ptrdiff_t>(row) - 1) * cells.stride +
+                             (static_cast<std::ptrdiff_t>(column) - 1);
+  *surface = Surface();
+  for (std::size_t j = 0; j < 4; ++j, from += cells.stride) {
+    double value = 0.0;
+    double first = 0.0;
+    double second = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double cell = from[i];
+      value += wx.value[i] * cell;
+      first += wx.first[i] * cell;
+      second += wx.second[i] * cell;
+    }
+    surface->value += wy.value[j] * value;
+    surface->gradient.x() += wy.value[j] * first;
+    surface->gradient.y() += wy.first[j] * value;
+    surface->xx += wy.value[j] * second;
+    surface->xy += wy.first[j] * first;
+    surface->yy += wy.second[j] * value;
+  }
+  return true;
+}
+
+// Removes the upward curvature of a point's surface, so that a point beside a wall does not make
+// the Newton step a step away from the maximum.
+void KeepDownward(Surface* surface) {
+  const double mean = 0.5 * (surface->xx + surface->yy);
+  const double difference = 0.5 * (surface->xx - surface->yy);
+  const double root = std::hypot(difference, surface->xy);
+  const double high = mean + root;
+  if (high <= 0.0) return;
+  const double low = std::min(mean - root, 0.0);
+  // low * v v^T with v the eigenvector of the lower eigenvalue.
+  const double c = root > 0.0 ? difference / root : 1.0;
+  const double s = root > 0.0 ? surface->xy / root : 0.0;
+  surface->xx = 0.5 * low * (1.0 - c);
+  surface->yy = 0.5 * low * (1.0 + c);
+  surface->xy = -0.5 * low * s;
+}
+
+struct Response {
+  double score = 0.0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d downward_hessian = Eigen::Matrix3d::Zero();  // of the points' downward curvature
+};
+
+Response RespondAt(const LookupTable& table, const std::vector<Eigen::Vector2d>& points,
+                   const Pose2& pose) {
+  const LookupTable::Level& cells = table.level(0);
+  const double scale = 1.0 / table.resolution();
+  const double c = std::cos(pose.theta);
+  const double s = std::sin(pose.theta);
+  Response response;
+  Surface surface;
+  for (const Eigen::Vector2d& point : points) {
+    const double x = c * point.x() - s * point.y();
+    const double y = s * point.x() + c * point.y();
+    if (!ReadSurface(cells, scale * (pose.x + x), scale * (pose.y + y), &surface)) continue;
+    response.score += surface.value;
+    const Eigen::Vector2d g = scale * surface.gradient;
+    response.gradient += Eigen::Vector3d(g.x(), g.y(), -y * g.x() + x * g.y());
+    const double bend = -x * g.x() - y * g.y();  // of the point's path as the angle changes
+    const auto add = [&](Eigen::Matrix3d* hessian, double bend_term) {
+      const double xx = scale * scale * surface.xx;
+      const double xy = scale * scale * surface.xy;
+      const double yy = scale * scale * surface.yy;
+      (*hessian)(0, 0) += xx;
+      (*hessian)(0, 1) += xy;
+      (*hessian)(1, 1) += yy;
+      (*hessian)(0, 2) += -y * xx + x * xy;
+      (*hessian)(1, 2) += -y * xy + x * yy;
+      (*hessian)(2, 2) += y * y * xx - 2.0 * x * y * xy + x * x * yy + bend_term;
+    };
+    add(&response.hessian, bend);
+    KeepDownward(&surface);
+    add(&response.downward_hessian, std::min(bend, 0.0));
+  }
+  const double norm = 1.0 / (255.0 * static_cast<double>(points.size()));
+  response.score *= norm;
+  response.gradient *= norm;
+  for (Eigen::Matrix3d* hessian : {&response.hessian, &response.downward_hessian}) {
+    *hessian *= norm;
+    *hessian = Eigen::Matrix3d(hessian->selfadjointView<Eigen::Upper>());
+  }
+  return response;
+}
+
+// The score alone.
+double ScoreAt(const LookupTable& table, const std::vector<Eigen::Vector2d>& points,
+               const Pose2& pose) {
+  const LookupTable::Level& cells = table.level(0);
+  const double scale = 1.0 / table.resolution();
+  const double c = scale * std::cos(pose.theta);
+  const double s = scale * std::sin(pose.theta);
+  const double left = scale * pose.x - cells.x0 - 0.5;
+  const double bottom = scale * pose.y - cells.y0 - 0.5;
+  const double end_x = cells.width + 2.0;
+  const double end_y = cells.height + 2.0;
+  double sum = 0.0;
+  for (const Eigen::Vector2d& point : points) {
+    const double x = left + c * point.x() - s * point.y();
+    const double y = bottom + s * point.x() + c * point.y();
+    if (!(x > -2.0 && y > -2.0 && x < end_x && y < end_y)) continue;
+    // Within the padding, so truncation is made to round down.
+    const int column = static_cast<int>(x + 2.0) - 2;
+    const int row = static_cast<int>(y + 2.0) - 2;
+    const double u = x - column;
+    const double v = y - row;
+    const std::uint8_t* from = cells.data + row * cells.stride + column;
+    const std::uint8_t* above = from + cells.stride;
+    sum += (1.0 - v) * (from[0] + u * (from[1] - from[0])) +
+           v * (above[0] + u * (above[1] - above[0]));
+  }
+  return sum / (255.0 * static_cast<double>(points.size()));
+}
+
+double RmsRadius(const std::vector<Eigen::Vector2d>& points) {
+  double sum = 0.0;
+  for (const Eigen::Vector2d& point : points) sum += point.squaredNorm();
+  return std::max(0.1, std::sqrt(sum / static_cast<double>(points.size())));
+}
+
+using Axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+
+// The covariance with the given variances along axes in (x, y, radius * theta), plus the floor.
+Eigen::Matrix3d AssembleCovariance(const Eigen::Matrix3d& axes, const Eigen::Vector3d& variances,
+                                   double radius, const RefineOptions& options) {
+  const Eigen::Vector3d units(1.0, 1.0, 1.0 / radius);
+  const Eigen::Matrix3d scaled = axes * variances.asDiagonal() * axes.transpose();
+  Eigen::Matrix3d covariance = units.asDiagonal() * scaled * units.asDiagonal();
+  const double floor_m2 = options.floor_sigma_m * options.floor_sigma_m;
+  const double floor_rad = DegToRad(options.floor_sigma_deg);
+  covariance.diagonal() += Eigen::Vector3d(floor_m2, floor_m2, floor_rad * floor_rad);
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+Eigen::Matrix3d CurvatureCovariance(const Response& response, double radius,
+                                    const RefineOptions& options) {
+  const Eigen::Vector3d units(1.0, 1.0, 1.0 / radius);
+  const Eigen::Matrix3d information =
+      -options.sharpness * (units.asDiagonal() * response.hessian * units.asDiagonal());
+  const Axes axes(information);
+  const double least = 1.0 / (options.reach_m * options.reach_m);
+  const Eigen::Vector3d variances = axes.eigenvalues().cwiseMax(least).cwiseInverse();
+  return AssembleCovariance(axes.eigenvectors(), variances, radius, options);
+}
+
+// The response surface about a pose, in (x, y, radius * theta) from it.
+class LocalSurface {
+ public:
+  LocalSurface(const LookupTable& table, const std::vector<Eigen::Vector2d>& points,
+               const Pose2& centre, double radius)
+      : table_(table), points_(points), centre_(centre), radius_(radius) {}
+
+  double operator()(const Eigen::Vector3d& offset) const {
+    return ScoreAt(
+        table_, points_,
+        {centre_.x + offset.x(), centre_.y + offset.y(), centre_.theta + offset.z() / radius_});
+  }
+
+ private:
+  const LookupTable& table_;
+  const std::vector<Eigen::Vector2d>& points_;
+  Pose2 centre_;
+  double radius_;
+};
+
+// Second differences over `arm`, wide enough to look past the bumps that single points make.
+Eigen::Matrix3d SecondDifferences(const LocalSurface& surface, double arm) {
+  const double centre = surface(Eigen::Vector3d::Zero());
+  Eigen::Matrix3d differences;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d u = arm * Eigen::Vector3d::Unit(i);
+    differences(i, i) = surface(u) + surface(-u) - 2.0 * centre;
+    for (int j = 0; j < i; ++j) {
+      const Eigen::Vector3d v = arm * Eigen::Vector3d::Unit(j);
+      differences(i, j) =
+          0.25 * (surface(u + v) + surface(-u - v) - surface(u - v) - surface(v - u));
+      differences(j, i) = differences(i, j);
+    }
+  }
+  return differences / (arm * arm);
+}
+
+// Integrals of the likelihood exp(sharpness (score - top)) and of its second moment on one side of
+// the centre; the steps grow with the distance.
+struct Moments {
+  double mass = 0.0;
+  double second = 0.0;
+};
+
+constexpr double kFirstStep = 0.01;    // m
+constexpr double kStepGrowth = 1.25;   // each step over the one before
+constexpr double kNegligible = 0.002;  // likelihood at which a side ends
+
+Moments SideMoments(const LocalSurface& surface, const Eigen::Vector3d& direction, double top,
+                    const RefineOptions& options) {
+  Moments moments;
+  const auto likelihood = [&](double distance) {
+    return std::exp(options.sharpness * (surface(distance * direction) - top));
+  };
+  double last = 0.0;
+  double last_value = likelihood(0.0);
+  for (double step = kFirstStep; last < options.reach_m; step *= kStepGrowth) {
+    const double next = std::min(last + step, options.reach_m);
+    const double value = likelihood(next);
+    moments.mass += 0.5 * (next - last) * (last_value + value);
+    moments.second += 0.5 * (next - last) * (last_value * last * last + value * next * next);
+    if (value < kNegligible) break;
+    last = next;
+    last_value = value;
+  }
+  return moments;
+}
+
+}  // namespace
+
+RefinedMatch RefineMatch(const LookupTable& table,
+                         const std::vector<Eigen::Vector2d>& points_in_query,
+                         const Pose2& T_reference_query_initial, const RefineOptions& options) {
+  RefinedMatch match;
+  match.T_reference_query.mean = T_reference_query_initial;
+  if (points_in_query.empty()) return match;
+  const double radius = RmsRadius(points_in_query);
+  const double max_turn = DegToRad(options.max_turn_deg);
+  const Pose2& start = T_reference_query_initial;
+
+  Pose2 pose = start;
+  Response response = RespondAt(table, points_in_query, pose);
+  double damping = 1e-3;
+  const Eigen::Vector3d unit_damping(1.0, 1.0, radius * radius);
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    // The damping is relative to the curvature of a point on the ridge of a wall.
+    const double ridge = 1.0 / (table.sigma() * table.sigma());
+    Eigen::Matrix3d curvature = -response.downward_hessian;
+    curvature.diagonal() += (damping * ridge) * unit_damping;
+    const Eigen::Vector3d step = curvature.ldlt().solve(response.gradient);
+    if (!step.allFinite()) break;
+    const Pose2 next{pose.x + step.x(), pose.y + step.y(), WrapAngle(pose.theta + step.z())};
+    if (Distance(start, next) > options.max_shift_m ||
+        std::abs(WrapAngle(next.theta - start.theta)) > max_turn) {
+      break;
+    }
+    const bool is_small = step.head<2>().norm() + radius * std::abs(step.z()) < 1e-5;
+    const Response at_next = RespondAt(table, points_in_query, next);
+    if (at_next.score >= response.score) {
+      pose = next;
+      response = at_next;
+      damping = std::max(1e-6, 0.1 * damping);
+    } else {
+      damping *= 10.0;
+    }
+    if (is_small) {
+      match.converged = true;
+      break;
+    }
+  }
+  match.T_reference_query = {pose, CurvatureCovariance(response, radius, options)};
+  match.score = response.score;
+  return match;
+}
+
+Eigen::Matrix3d ResponseCovariance(const LookupTable& table,
+                                   const std::vector<Eigen::Vector2d>& points_in_query,
+                                   const Pose2& T_reference_query, const RefineOptions& options) {
+  if (points_in_query.empty()) {
+    return AssembleCovariance(Eigen::Matrix3d::Identity(),
+                              Eigen::Vector3d::Constant(options.reach_m * options.reach_m), 1.0,
+                              options);
+  }
+  const double radius = RmsRadius(points_in_query);
+  const LocalSurface surface(table, points_in_query, T_reference_query, radius);
+  const double arm = 1.5 * std::max(table.sigma(), table.resolution());
+  const Axes axes(SecondDifferences(surface, arm));
+  const double top = surface(Eigen::Vector3d::Zero());
+  Eigen::Vector3d variances;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = axes.eigenvectors().col(i);
+    const Moments ahead = SideMoments(surface, axis, top, options);
+    const Moments behind = SideMoments(surface, -axis, top, options);
+    variances(i) = (ahead.second + behind.second) / (ahead.mass + behind.mass);
+  }
+  return AssembleCovariance(axes.eigenvectors(), variances, radius, options);
+}
+
+}  // namespace masked_mapper
