@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search behind loop validation (Section III-E): the path of least error between two nodes over
+// odometry, floor changes, validated and unvalidated closures, and its most redundant edge.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/pose_graph/pose_graph.hpp"
+
+namespace masked_mapper {
+
+using HypothesisId = std::int32_t;
+
+struct Hypothesis {
+  NodeId a = 0;  ///< the newer node
+  NodeId b = 0;
+  UncertainPose2 T_a_b;
+  int votes = 0;
+  bool validated = false;
+};
+
+/// One edge of a path, as walked.
+struct PathStep {
+  EdgeId edge = -1;              ///< of the graph, or
+  HypothesisId hypothesis = -1;  ///< a closure that is not in the graph
+  NodeId to = 0;                 ///< where the step ends
+  int ways = 0;                  ///< how many nodes of the search led to `to` before it was settled
+};
+
+struct LeastErrorPath {
+  std::vector<PathStep> steps;
+  UncertainPose2 T_from_to;
+  int unvalidated = 0;  ///< closures on the path without enough votes
+};
+
+/// Edges that a search may not take; few, so that looking through them is cheap.
+class RemovedSteps {
+ public:
+  void Add(const PathStep& step);
+  bool HoldsEdge(EdgeId id) const;
+  bool HoldsHypothesis(HypothesisId id) const;
+
+ private:
+  std::vector<EdgeId> edges_;
+  std::vector<HypothesisId> hypotheses_;
+};
+
+/// Dijkstra over (number of unvalidated closures, trace of the covariance), in this order, so that
+/// a validated way is always taken before an unvalidated one; this is our reading of "validated
+/// always before unvalidated". As in the projection, a node is settled by the first composition to
+/// reach it. Costs what the nodes within `max_trace` cost, whatever the size of the map.
+class LoopSearch {
+ public:
+  /// Makes a hypothesis an edge of the search: one more unvalidated closure, or a validated one
+  /// that the graph does not hold yet. Ids are places in the list that is given to Find().
+  void Add(HypothesisId id, const Hypothesis& hypothesis);
+  /// Takes it out for good, once the graph holds it.
+  void Drop(HypothesisId id, const Hypothesis& hypothesis);
+
+  /// Empty when every way is removed, or has a trace (m^2 and rad^2, Eq. 2) above `max_trace`.
+  std::optional<LeastErrorPath> Find(const PoseGraph& graph,
+                                     const std::vector<Hypothesis>& hypotheses, NodeId from,
+                                     NodeId to, double max_trace, const RemovedSteps& removed);
+
+ private:
+  struct Reached {
+    std::int64_t search = 0;  // the search that this entry belongs to; older ones count as empty
+    double trace = 0.0;
+    int unvalidated = 0;
+    int ways = 0;
+    EdgeId edge = -1;
+    HypothesisId hypothesis = -1;
+    NodeId parent = -1;
+    bool settled = false;
+    UncertainPose2 T_from_node;
+  };
+
+  Reached& At(NodeId node);
+
+  std::vector<std::vector<HypothesisId>> hypotheses_of_;  // by node
+  std::vector<Reached> reached_;                          // by node
+  std::int64_t search_ = 0;
+};
+
+/// The step that is most redundant: whose end was reached from the most nodes of the search, so
+/// that another way round probably exists. Ties go to the step nearest the middle of the path,
+/// which leaves the surroundings of both ends whole (ours). `path` has at least one step.
+const PathStep& MostRedundantStep(const LeastErrorPath& path);
+
+}  // namespace masked_mapper
