@@ -9,6 +9,7 @@
 #include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/rendering/octree.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
@@ -31,6 +32,7 @@ struct Options {
   ValidatorOptions validator;
   OptimizerOptions optimizer;
   GridOptions grid;
+  OctreeOptions octree;
   int threads = 0;  ///< 0: as many as the machine has
 };
 

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/option_table.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "masked_mapper/log/did_you_mean.hpp"
+#include "masked_mapper/log/input_error.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// The shortest text that reads back the same; without an exponent where people write none.
+std::string NumberText(double value) {
+  char buffer[64];
+  const bool plain = value == 0.0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e15);
+  const auto format = plain ? std::chars_format::fixed : std::chars_format::general;
+  const auto [end, error] = std::to_chars(std::begin(buffer), std::end(buffer), value, format);
+  assert(error == std::errc());
+  static_cast<void>(error);
+  return {buffer, end};
+}
+
+/// The whole of `text` as a number, or false.
+template <typename Number>
+bool Parse(std::string_view text, Number& value) {
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool ParseValue(const std::string& text, double& value) {
+  return Parse(text, value) && std::isfinite(value);
+}
+bool ParseValue(const std::string& text, int& value) { return Parse(text, value); }
+bool ParseValue(const std::string& text, std::size_t& value) { return Parse(text, value); }
+bool ParseValue(const std::string& text, bool& value) {
+  value = text == "true";
+  return text == "true" || text == "false";
+}
+
+template <typename Enum>
+Choice ChoiceOf(Enum& field, std::vector<std::string> names) {
+  return {std::move(names), [&field] { return static_cast<std::size_t>(field); },
+          [&field](std::size_t index) { field = static_cast<Enum>(index); }};
+}
+
+template <typename Value>
+std::string TypeName() {
+  if (std::is_same_v<Value, bool>) return "true or false";
+  return std::is_same_v<Value, double> ? "a number" : "a whole number";
+}
+
+/// The nearest key; when only the section was forgotten or wrong, the key that ends alike.
+std::string NearestKey(const std::string& unknown, const std::vector<OptionEntry>& table) {
+  std::vector<std::string> keys;
+  keys.reserve(table.size());
+  for (const OptionEntry& entry : table) keys.push_back(entry.key);
+  const std::string near = DidYouMean(unknown, keys);
+  if (!near.empty()) return near;
+  const auto last_name = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+  for (const std::string& key : keys) {
+    if (last_name(key) == last_name(unknown)) return " (did you mean `" + key + "`?)";
+  }
+  return {};
+}
+
+/// A user's text inside a message: one line, not too long.
+std::string Quoted(std::string text) {
+  constexpr std::size_t kLongest = 60;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  for (char& letter : text) {
+    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) letter = '?';
+  }
+  return "`" + text + "`";
+}
+
+}  // namespace
+
+std::vector<OptionEntry> OptionTable(Options& o) {
+  constexpr double kFar = 1000.0;  // m; no distance that makes sense here is longer
+  MotionOptions& motion = o.motion;
+  OpeningsMaskOptions& openings = o.masks.openings;
+  return {
+      {"threads", &o.threads, 0, 256, "0: as many as the machine has; never changes the result"},
+
+      {"log.max_range", &o.log.max_range, 0, kFar,
+       "m; at or beyond it nothing was hit; 0: found from the log"},
+      {"log.min_range", &o.log.min_range, 0, 10, "m; anything nearer says nothing"},
+      {"log.laser_x", &o.log.laser_x, -10, 10, "m; scanner on the robot, where the log is silent"},
+      {"log.laser_y", &o.log.laser_y, -10, 10, "m; to the left"},
+      {"log.laser_theta_deg", &o.log.laser_theta_deg, -180, 180, "deg; counter-clockwise"},
+      {"log.field_of_view_deg", &o.log.field_of_view_deg, 0, 360,
+       "deg; of FLASER lines; 0: by the number of beams"},
+
+      {"motion.source", ChoiceOf(motion.source, {"odometry", "scans", "fused"}), 0, 0,
+       "wheels alone, scans alone, or wheels corrected by scans"},
+      {"motion.odometry.sigma_position_per_sqrt_m", &motion.odometry.sigma_position_per_sqrt_m,
+       1e-6, 10, "m of position error after one metre of travel"},
+      {"motion.odometry.sigma_heading_deg_per_sqrt_m",
+       &motion.odometry.sigma_heading_deg_per_sqrt_m, 1e-6, 90,
+       "deg of heading error after one metre of travel"},
+      {"motion.odometry.sigma_heading_deg_per_sqrt_rad",
+       &motion.odometry.sigma_heading_deg_per_sqrt_rad, 0, 90,
+       "deg of heading error after turning by a radian"},
+      {"motion.odometry.sigma_heading_deg_per_sqrt_s",
+       &motion.odometry.sigma_heading_deg_per_sqrt_s, 0, 90,
+       "deg of heading error after a second (gyro drift)"},
+      {"motion.odometry.sigma_position_per_step", &motion.odometry.sigma_position_per_step, 1e-6, 1,
+       "m of position error of every step with motion"},
+      {"motion.scans.map.cell_m", &motion.scans.map.cell_m, 0.01, 2,
+       "m; cell of the rolling local map"},
+      {"motion.scans.map.window_cells", &motion.scans.map.window_cells, 0, 10,
+       "cells to each side that a distribution looks at"},
+      {"motion.scans.map.reach_m", &motion.scans.map.reach_m, 1, kFar,
+       "m; points farther from the map's origin are left out"},
+      {"motion.scans.map.point_sigma_m", &motion.scans.map.point_sigma_m, 1e-4, 1,
+       "m; noise of a point"},
+      {"motion.scans.map.first_sigma_m", &motion.scans.map.first_sigma_m, 1e-4, 2,
+       "m; the same in the first iteration, then halved each time"},
+      {"motion.scans.map.outlier_sigmas", &motion.scans.map.outlier_sigmas, 0.1, 100,
+       "distance at which a point has lost half of its say"},
+      {"motion.scans.map.line_ratio", &motion.scans.map.line_ratio, 0, 1,
+       "smaller over larger variance below which points form a line"},
+      {"motion.scans.map.max_iterations", &motion.scans.map.max_iterations, 1, 1000,
+       "of one alignment"},
+      {"motion.scans.map.covariance_inflation", &motion.scans.map.covariance_inflation, 1e-3, 1e4,
+       "beams of one wall err together, not each on its own"},
+      {"motion.scans.match_distance_m", &motion.scans.match_distance_m, 0, 10,
+       "m of travel below which a scan is not matched"},
+      {"motion.scans.match_angle_deg", &motion.scans.match_angle_deg, 0, 180,
+       "deg of turn below which a scan is not matched"},
+      {"motion.scans.keyframe_distance_m", &motion.scans.keyframe_distance_m, 0, 10,
+       "m of travel from one scan in the local map to the next"},
+      {"motion.scans.keyframe_angle_deg", &motion.scans.keyframe_angle_deg, 0, 180,
+       "deg of turn from one scan in the local map to the next"},
+      {"motion.scans.keyframes_per_map", &motion.scans.keyframes_per_map, 1, 10000,
+       "scans after which the next local map is begun"},
+      {"motion.scans.min_inlier_share", &motion.scans.min_inlier_share, 0, 1,
+       "share of agreeing points below which other guesses are tried"},
+      {"motion.scans.lost_inlier_share", &motion.scans.lost_inlier_share, 0, 1,
+       "share of agreeing points below which a scan is not believed"},
+      {"motion.wheelless.sigma_speed_m_per_s", &motion.wheelless.sigma_speed_m_per_s, 1e-3, 100,
+       "m/s about the speed of the step before"},
+      {"motion.wheelless.sigma_turn_deg_per_s", &motion.wheelless.sigma_turn_deg_per_s, 0.01, 3600,
+       "deg/s about the turn of the step before"},
+
+      {"nodes.min_edge_length_m", &o.nodes.min_edge_length_m, 0.1, kFar,
+       "m between scan nodes, straight line; paper: 1.5"},
+      {"nodes.max_edge_length_m", &o.nodes.max_edge_length_m, 0.1, kFar,
+       "m to the last node of any kind; paper: 9"},
+      {"nodes.kept_scan_distance_m", &o.nodes.kept_scan_distance_m, 0, kFar,
+       "m of travel from one rendered scan to the next"},
+      {"nodes.kept_scan_angle_deg", &o.nodes.kept_scan_angle_deg, 0, 360,
+       "deg of turn from one rendered scan to the next"},
+
+      {"masks.eccentricity.isovist.max_range_m", &o.masks.eccentricity.isovist.max_range_m, 0.5,
+       kFar, "m; beams end here at the latest"},
+      {"masks.eccentricity.open_below", &o.masks.eccentricity.open_below, 0, 1,
+       "eccentricity below which a corridor has opened"},
+      {"masks.eccentricity.corridor_above", &o.masks.eccentricity.corridor_above, 0, 1,
+       "eccentricity above which a place is a corridor"},
+      {"masks.eccentricity.max_drift", &o.masks.eccentricity.max_drift, 0, 100,
+       "distance to the centroid, in sigmas, that makes a dead end"},
+      {"masks.eccentricity.drift_min_span_deg", &o.masks.eccentricity.drift_min_span_deg, 0, 360,
+       "deg that a scan must span for drift to be judged"},
+      {"masks.openings.detection.min_range_m", &openings.detection.min_range_m, 0.1, kFar,
+       "m; runs are cut from ranges above it; paper: 5"},
+      {"masks.openings.detection.max_depth_m", &openings.detection.max_depth_m, 0.1, kFar,
+       "m; how deep an opening may be; paper: 5"},
+      {"masks.openings.detection.min_width_m", &openings.detection.min_width_m, 0, kFar,
+       "m; paper: 0.75"},
+      {"masks.openings.detection.min_angle_deg", &openings.detection.min_angle_deg, 0, 360,
+       "deg, as seen from the laser; paper: 9"},
+      {"masks.openings.detection.max_gap_deg", &openings.detection.max_gap_deg, 0, 360,
+       "deg of invalid beams that do not end a run"},
+      {"masks.openings.horizon_s", &openings.horizon_s, 0, 3600,
+       "s over which directions are remembered"},
+      {"masks.openings.min_horizon_scans", &openings.min_horizon_scans, 1, 10000,
+       "scans remembered however long ago, for slow scanners"},
+      {"masks.openings.min_share", &openings.min_share, 0, 1,
+       "share of the remembered scans that must show a direction"},
+      {"masks.openings.max_deviation_deg", &openings.max_deviation_deg, 0, 180,
+       "deg; standard deviation of a steady direction"},
+      {"masks.openings.max_step_deg", &openings.max_step_deg, 0, 180,
+       "deg between sightings of one direction"},
+      {"masks.openings.min_turn_deg", &openings.min_turn_deg, 0, 180,
+       "deg off the course, at least; paper: 40"},
+      {"masks.openings.max_turn_deg", &openings.max_turn_deg, 0, 180,
+       "deg off the course, at most; paper: 90"},
+      {"masks.openings.course_distance_m", &openings.course_distance_m, 0.01, 100,
+       "m of path that the course is taken over"},
+      {"masks.openings.dead_end_turn_deg", &openings.dead_end_turn_deg, 0, 180,
+       "deg turned since the last node; paper: 150"},
+      {"masks.openings.dead_end_distance_m", &openings.dead_end_distance_m, 0, 100,
+       "m from the last node before there is a direction"},
+
+      {"candidates.max_mahalanobis", &o.candidates.max_mahalanobis, 0, 1000,
+       "distance of a pair still matched; MaxMaha of the paper: 5"},
+      {"candidates.max_matches", &o.candidates.max_matches, 0, 10000,
+       "pairs offered per node; MaxMatches of the paper: 5"},
+      {"candidates.match_range_m", &o.candidates.match_range_m, 0.01, 100,
+       "m at which two scans can still be matched; R of the paper: 2"},
+
+      {"matcher.table.resolution_m", &o.matcher.table.resolution_m, 0.005, 1,
+       "m; side of a cell of the look-up table"},
+      {"matcher.table.sigma_m", &o.matcher.table.sigma_m, 0.005, 2, "m; blur of the look-up table"},
+      {"matcher.table.max_range_m", &o.matcher.table.max_range_m, 1, 100,
+       "m; points farther away are left out"},
+      {"matcher.table.join_gap_m", &o.matcher.table.join_gap_m, 0, 10,
+       "m; nearer consecutive points are joined by a line; 0: never"},
+      {"matcher.table.levels", &o.matcher.table.levels, 1, 16, "of the pyramid, cells included"},
+      {"matcher.min_score", &o.matcher.min_score, 0, 1,
+       "how much scans must overlap; MinScore of the paper: 0.425"},
+      {"matcher.window_sigmas", &o.matcher.window_sigmas, 0.1, 100,
+       "half the search window, in sigmas of the guess"},
+      {"matcher.min_window_m", &o.matcher.min_window_m, 0, 100,
+       "m; half the search window at least"},
+      {"matcher.max_window_m", &o.matcher.max_window_m, 0, 100,
+       "m; half the search window at most"},
+      {"matcher.min_window_deg", &o.matcher.min_window_deg, 0, 180,
+       "deg; half the search window at least"},
+      {"matcher.max_window_deg", &o.matcher.max_window_deg, 0, 180,
+       "deg; half the search window at most"},
+      {"matcher.angle_step_deg", &o.matcher.angle_step_deg, 0.01, 45, "deg between search angles"},
+      {"matcher.point_spacing_m", &o.matcher.point_spacing_m, 0, 10,
+       "m; scans are thinned to one point per cell of this size"},
+      {"matcher.prior_weight", &o.matcher.prior_weight, 0, 1,
+       "score lost per chi^2 of the distance from the guess"},
+      {"matcher.table_memory_mib", &o.matcher.table_memory_mib, 1, 1 << 20,
+       "MiB of look-up tables kept"},
+
+      {"matcher.refine.max_iterations", &o.matcher.refine.max_iterations, 0, 1000,
+       "of the climb from the best cell to the maximum"},
+      {"matcher.refine.max_shift_m", &o.matcher.refine.max_shift_m, 0, 10,
+       "m that the climb may go at most"},
+      {"matcher.refine.max_turn_deg", &o.matcher.refine.max_turn_deg, 0, 90,
+       "deg that the climb may turn at most"},
+      {"matcher.refine.sharpness", &o.matcher.refine.sharpness, 0.1, 1e4,
+       "likelihood of a pose = exp(sharpness * score)"},
+      {"matcher.refine.floor_sigma_m", &o.matcher.refine.floor_sigma_m, 1e-4, 10,
+       "m; added to a match's covariance: what no score knows"},
+      {"matcher.refine.floor_sigma_deg", &o.matcher.refine.floor_sigma_deg, 1e-3, 90,
+       "deg; the same for the angle"},
+      {"matcher.refine.reach_m", &o.matcher.refine.reach_m, 0.1, 100,
+       "m around the maximum that the response surface is looked at"},
+
+      {"validator.votes_needed", &o.validator.votes_needed, 1, 1000,
+       "loops that must agree with a closure; paper: 6"},
+      {"validator.max_loop_error", &o.validator.max_loop_error, 0.01, 1000,
+       "distance from identity of an agreeing loop; paper: 2"},
+      {"validator.max_loop_trace", &o.validator.max_loop_trace, 1e-6, 1e6,
+       "m^2 + rad^2 of covariance beyond which a loop is no evidence"},
+      {"validator.tight_loop_trace", &o.validator.tight_loop_trace, 0, 1e6,
+       "m^2 + rad^2 up to which every loop is evidence of its own"},
+      {"validator.max_contradiction", &o.validator.max_contradiction, 0.01, 1000,
+       "distance at which the best validated way forbids a closure"},
+      {"validator.max_loops", &o.validator.max_loops, 1, 100000,
+       "loops looked at for one hypothesis"},
+
+      {"optimizer.max_iterations", &o.optimizer.max_iterations, 0, 100000, "of one solve"},
+      {"optimizer.function_tolerance", &o.optimizer.function_tolerance, 0, 1,
+       "relative decrease of chi^2 at which a solve ends"},
+
+      {"grid.resolution_m", &o.grid.resolution_m, 0.01, 1, "m; side of a cell of the grid"},
+      {"grid.max_usable_range_m", &o.grid.max_usable_range_m, 0.5, kFar,
+       "m; beams are drawn up to here"},
+      {"grid.free_range_without_return_m", &o.grid.free_range_without_return_m, 0, kFar,
+       "m that a beam clears which met nothing; 0: it does not"},
+      {"grid.occupied_ratio", &o.grid.occupied_ratio, 0, 1,
+       "share of hits among visits from which a cell is a wall"},
+      {"grid.min_hits", &o.grid.min_hits, 1, 1000, "hits that a wall cell has at least"},
+
+      {"octree.wall_height_m", &o.octree.wall_height_m, 0.01, 100,
+       "m; walls reach from the floor's elevation up to here"},
+      {"octree.free_height_m", &o.octree.free_height_m, 0.01, 100,
+       "m of free space, rounded to a power of two of voxels"},
+  };
+}
+
+std::string ValueText(const OptionEntry& entry) {
+  struct {
+    std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
+    std::string operator()(const double* field) const { return NumberText(*field); }
+    std::string operator()(const int* field) const { return std::to_string(*field); }
+    std::string operator()(const std::size_t* field) const { return std::to_string(*field); }
+    std::string operator()(const Choice& choice) const { return choice.names.at(choice.get()); }
+  } text;
+  return std::visit(text, entry.field);
+}
+
+std::string RangeText(const OptionEntry& entry) {
+  if (std::holds_alternative<bool*>(entry.field)) return "true or false";
+  const auto* choice = std::get_if<Choice>(&entry.field);
+  if (choice == nullptr) return NumberText(entry.min) + " to " + NumberText(entry.max);
+  std::string names;
+  for (std::size_t i = 0; i < choice->names.size(); ++i) {
+    if (i > 0) names += i + 1 < choice->names.size() ? ", " : " or ";
+    names += choice->names[i];
+  }
+  return names;
+}
+
+void SetOption(const std::string& where, const std::string& key, const std::string& value,
+               Options& options) {
+  const std::vector<OptionEntry> table = OptionTable(options);
+  const auto entry = std::find_if(table.begin(), table.end(),
+                                  [&](const OptionEntry& known) { return known.key == key; });
+  if (entry == table.end()) {
+    throw InputError(where + ": unknown option " + Quoted(key) + NearestKey(key, table));
+  }
+  const auto fail = [&](const std::string& expected) {
+    throw InputError(where + ": " + key + " must be " + expected + ", not " + Quoted(value));
+  };
+  if (const auto* choice = std::get_if<Choice>(&entry->field)) {
+    const auto name = std::find(choice->names.begin(), choice->names.end(), value);
+    if (name == choice->names.end()) fail(RangeText(*entry));
+    choice->set(static_cast<std::size_t>(name - choice->names.begin()));
+    return;
+  }
+  std::visit(
+      [&](auto field) {
+        if constexpr (!std::is_same_v<decltype(field), Choice>) {
+          using Value = std::remove_pointer_t<decltype(field)>;
+          Value parsed{};
+          if (!ParseValue(value, parsed)) fail(TypeName<Value>());
+          const auto number = static_cast<double>(parsed);
+          if (!std::is_same_v<Value, bool> && (number < entry->min || number > entry->max)) {
+            fail(RangeText(*entry));
+          }
+          *field = parsed;
+        }
+      },
+      entry->field);
+}
+
+void SetOption(const std::string& assignment, Options& options) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    throw InputError("--set " + Quoted(assignment) + ": expected key=value");
+  }
+  SetOption("--set", assignment.substr(0, equals), assignment.substr(equals + 1), options);
+}
+
+void CheckOptions(const Options& options) {
+  struct Order {
+    const char* least_key;
+    double least;
+    const char* most_key;
+    double most;
+  };
+  const NodeOptions& nodes = options.nodes;
+  const MatcherOptions& matcher = options.matcher;
+  const OpeningsMaskOptions& openings = options.masks.openings;
+  const EccentricityMaskOptions& eccentricity = options.masks.eccentricity;
+  for (const Order& order : {
+           Order{"nodes.min_edge_length_m", nodes.min_edge_length_m, "nodes.max_edge_length_m",
+                 nodes.max_edge_length_m},
+           Order{"matcher.min_window_m", matcher.min_window_m, "matcher.max_window_m",
+                 matcher.max_window_m},
+           Order{"matcher.min_window_deg", matcher.min_window_deg, "matcher.max_window_deg",
+                 matcher.max_window_deg},
+           Order{"masks.openings.min_turn_deg", openings.min_turn_deg,
+                 "masks.openings.max_turn_deg", openings.max_turn_deg},
+           Order{"masks.eccentricity.open_below", eccentricity.open_below,
+                 "masks.eccentricity.corridor_above", eccentricity.corridor_above},
+       }) {
+    if (order.least > order.most) {
+      throw InputError(std::string(order.least_key) + " (" + NumberText(order.least) +
+                       ") must not be above " + order.most_key + " (" + NumberText(order.most) +
+                       ")");
+    }
+  }
+  if (options.log.max_range > 0.0 && options.log.min_range >= options.log.max_range) {
+    throw InputError("log.min_range (" + NumberText(options.log.min_range) +
+                     ") must be below log.max_range (" + NumberText(options.log.max_range) + ")");
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> OptionValues(const Options& options) {
+  Options copy = options;
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const OptionEntry& entry : OptionTable(copy)) {
+    if (entry.key == "threads") continue;
+    const bool is_word = std::holds_alternative<Choice>(entry.field);
+    values.emplace_back(entry.key, is_word ? '"' + ValueText(entry) + '"' : ValueText(entry));
+  }
+  return values;
+}
+
+}  // namespace masked_mapper
