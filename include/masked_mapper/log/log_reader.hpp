@@ -15,10 +15,10 @@ namespace masked_mapper {
 struct LogOptions {
   double max_range = 0.0;   ///< m; ranges at or beyond it are "no return"; 0: found from the log
   double min_range = 0.05;  ///< m; anything nearer says nothing
-  double laser_x = 0.0;     ///< m, scanner on the robot, for logs that do not say
-  double laser_y = 0.0;     ///< m
+  double laser_x = 0.0;  ///< m, scanner on the robot; any of the three not 0: the log is overruled
+  double laser_y = 0.0;  ///< m
   double laser_theta_deg = 0.0;    ///< deg
-  double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by the number of beams (DESIGN, Logs)
+  double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by PARAM, else by the number of beams
   bool read_ranges = true;         ///< false: scans come without beams (a first look at a long log)
 };
 
@@ -30,11 +30,14 @@ struct LogStatistics {
   std::uint64_t pressure = 0;
   std::uint64_t acceleration = 0;
   std::uint64_t floor_labels = 0;
-  std::uint64_t bad_lines = 0;    ///< skipped: malformed, wrong count, not a number
-  std::string first_bad_line;     ///< "line 17: expected 180 ranges, found 179"
-  std::uint64_t empty_scans = 0;  ///< valid, but not one beam returned
-  std::uint64_t stamp_jumps = 0;  ///< stamps that stepped backwards or wrapped, and were mended
-  bool truncated = false;         ///< the file ends in the middle of a line or of its gzip stream
+  std::uint64_t bad_lines = 0;       ///< skipped: malformed, wrong count, not a number
+  std::string first_bad_line;        ///< "line 17: FLASER: expected 180 ranges, found 179"
+  std::uint64_t invalid_ranges = 0;  ///< single beams skipped: NaN, negative or absurdly far
+  std::uint64_t empty_scans = 0;     ///< valid, but not one beam returned
+  std::uint64_t stamp_jumps = 0;     ///< stamps that stepped backwards or wrapped, and were mended
+  std::uint64_t reordered = 0;  ///< messages logged late, and put back in the order of their stamps
+  bool truncated = false;       ///< the file ends in the middle of a line or of its gzip stream
+  std::uint64_t trailing_bytes = 0;  ///< bytes after the end of the gzip stream, ignored
   std::map<std::string, std::uint64_t> other_messages;  ///< counted, not read
   double max_range = 0.0;                               ///< m, the limit in force (given or found)
   double first_stamp = 0.0;                             ///< s
@@ -46,6 +49,7 @@ class LogReader {
   virtual ~LogReader() = default;
   /// The next observation in order of stamps; empty at the end of the log.
   virtual std::optional<Observation> Next() = 0;
+  /// Complete once Next() has returned empty; before, it may be a few observations ahead.
   virtual const LogStatistics& Statistics() const = 0;
   /// Share of the file consumed so far, 0 to 1, for progress.
   virtual double Progress() const = 0;

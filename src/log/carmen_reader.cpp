@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/log/carmen_reader.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "masked_mapper/log/bounded_queue.hpp"
+#include "masked_mapper/log/carmen_line.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/log/line_splitter.hpp"
+#include "masked_mapper/log/scan_calibration.hpp"
+#include "masked_mapper/log/stamp_mender.hpp"
+#include "masked_mapper/log/text_source.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::size_t kTextBlock = 256 * 1024;
+constexpr std::size_t kTextBlocksAhead = 4;
+constexpr std::size_t kBatch = 128;
+constexpr std::size_t kBatchesAhead = 8;
+constexpr std::size_t kMostMessageNames = 64;
+
+/// Whether the beginning of a file could be text: no zero bytes, hardly any control characters.
+bool LooksLikeText(std::string_view beginning) {
+  const auto control = std::count_if(beginning.begin(), beginning.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte < 0x20 && !(byte >= '\t' && byte <= '\r')) || byte == 0x7f;
+  });
+  return beginning.find('\0') == std::string_view::npos &&
+         static_cast<double>(control) <= 0.05 * static_cast<double>(beginning.size());
+}
+
+/// Throws InputError when the file is no text at all.
+void CheckBeginning(const std::string& path, const TextSource& source, std::string_view block) {
+  constexpr std::size_t kLookedAt = 4096;
+  if (block.empty() && source.IsGzip() && source.Truncated()) {
+    throw InputError(path + ": begins like gzip, but cannot be decompressed");
+  }
+  if (block.empty()) throw InputError(path + ": is empty");
+  if (!LooksLikeText(block.substr(0, kLookedAt))) {
+    throw InputError(path + ": is binary, expected a CARMEN log (text, or text in gzip)");
+  }
+}
+
+/// The first look: until nothing that is wanted from it would change.
+ScanCalibration LookAt(const std::string& path, const LogOptions& options) {
+  TextSource source(path);
+  CalibrationFinder finder(options);
+  LineSplitter splitter;
+  std::vector<char> block(kTextBlock);
+  bool settled = false;
+  const auto on_line = [&](const char* begin, const char* end, bool too_long) {
+    if (settled || too_long) return;
+    const CarmenLine line = ParseCarmenLine(begin, end, true);
+    if (const auto* param = std::get_if<CarmenParam>(&line)) finder.Add(*param);
+    if (const auto* scan = std::get_if<CarmenScan>(&line)) {
+      finder.Add(*scan);
+      settled = finder.IsSettled();
+    }
+  };
+  bool is_first = true;
+  while (!settled) {
+    const std::size_t count = source.Read(block.data(), block.size());
+    if (is_first) CheckBeginning(path, source, {block.data(), count});
+    is_first = false;
+    splitter.Add({block.data(), count}, on_line);
+    if (count < block.size()) {
+      splitter.Finish(on_line);
+      break;
+    }
+  }
+  return finder.Find();
+}
+
+struct TextBlock {
+  std::string text;
+  double progress = 0.0;
+  bool is_last = false;
+  bool truncated = false;
+  std::uint64_t trailing_bytes = 0;
+};
+
+struct Batch {
+  std::vector<Observation> observations;
+  LogStatistics statistics;
+  double progress = 0.0;
+};
+
+/// Lines in, mended observations out; the counting.
+class LineReader {
+ public:
+  LineReader(const LogOptions& options, const ScanCalibration& calibration)
+      : read_ranges_(options.read_ranges), calibration_(calibration) {
+    statistics_.max_range = calibration.max_range();
+  }
+
+  /// False when the line was malformed.
+  bool Add(const char* begin, const char* end, bool too_long) {
+    ++statistics_.lines;
+    const std::uint64_t bad_before = statistics_.bad_lines;
+    if (too_long) {
+      Handle(CarmenError{"longer than any message"});
+    } else {
+      std::visit([this](auto&& part) { Handle(std::forward<decltype(part)>(part)); },
+                 ParseCarmenLine(begin, end, read_ranges_));
+    }
+    return statistics_.bad_lines == bad_before;
+  }
+
+  void SetTruncated() { statistics_.truncated = true; }
+  void SetTrailingBytes(std::uint64_t count) { statistics_.trailing_bytes = count; }
+  void Finish() { mender_.Finish(); }
+
+  std::optional<Observation> Next() {
+    std::optional<Observation> observation = mender_.Next();
+    if (!observation) return observation;
+    const double stamp = Stamp(*observation);
+    if (!has_first_stamp_) statistics_.first_stamp = stamp;
+    has_first_stamp_ = true;
+    statistics_.last_stamp = stamp;
+    return observation;
+  }
+
+  LogStatistics Statistics() const {
+    LogStatistics statistics = statistics_;
+    statistics.stamp_jumps = mender_.jumps();
+    statistics.reordered = mender_.reordered();
+    return statistics;
+  }
+
+ private:
+  void Handle(CarmenNothing) {}
+  void Handle(CarmenParam&&) {}
+  void Handle(CarmenOther&& other) { CountOther(other.name); }
+  void Handle(CarmenError&& error) {
+    if (statistics_.bad_lines++ == 0) {
+      statistics_.first_bad_line =
+          "line " + std::to_string(statistics_.lines) + ": " + error.reason;
+    }
+  }
+  void Handle(OdometryReading&& reading) { Take(std::move(reading), &statistics_.odometry); }
+  void Handle(PressureReading&& reading) { Take(std::move(reading), &statistics_.pressure); }
+  void Handle(AccelerationReading&& reading) {
+    Take(std::move(reading), &statistics_.acceleration);
+  }
+  void Handle(FloorLabel&& reading) { Take(std::move(reading), &statistics_.floor_labels); }
+  void Handle(CarmenScan&& carmen_scan) {
+    if (carmen_scan.is_flaser && calibration_.flaser_is_twin()) {
+      CountOther("FLASER (repeats ROBOTLASER1)");
+      return;
+    }
+    LaserScan scan = calibration_.Apply(std::move(carmen_scan), &statistics_.invalid_ranges);
+    const auto is_hit = [&scan](float range) { return range < scan.max_range; };
+    if (read_ranges_ && std::none_of(scan.ranges.begin(), scan.ranges.end(), is_hit)) {
+      ++statistics_.empty_scans;
+    }
+    Take(std::move(scan), &statistics_.scans);
+  }
+
+  void Take(Observation observation, std::uint64_t* count) {
+    ++*count;
+    mender_.Add(std::move(observation));
+  }
+
+  void CountOther(const std::string& name) {
+    auto& others = statistics_.other_messages;
+    const bool has_room = others.size() < kMostMessageNames || others.count(name) > 0;
+    ++others[has_room ? name : "(others)"];
+  }
+
+  const bool read_ranges_;
+  const ScanCalibration& calibration_;
+  StampMender mender_;
+  LogStatistics statistics_;
+  bool has_first_stamp_ = false;
+};
+
+class CarmenReader : public LogReader {
+ public:
+  CarmenReader(const std::string& path, const LogOptions& options)
+      : options_(options), calibration_(LookAt(path, options)), source_(path) {
+    statistics_.max_range = calibration_.max_range();
+    text_thread_ = std::thread([this] { ReadText(); });
+    try {
+      line_thread_ = std::thread([this] { ReadLines(); });
+    } catch (...) {
+      Stop();
+      throw;
+    }
+  }
+
+  ~CarmenReader() override { Stop(); }
+
+  std::optional<Observation> Next() override {
+    while (position_ == batch_.size()) {
+      std::optional<Batch> batch = batches_.Pop();
+      if (!batch) {
+        if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+        return std::nullopt;
+      }
+      batch_ = std::move(batch->observations);
+      position_ = 0;
+      statistics_ = std::move(batch->statistics);
+      progress_ = batch->progress;
+    }
+    return std::move(batch_[position_++]);
+  }
+
+  const LogStatistics& Statistics() const override { return statistics_; }
+  double Progress() const override { return progress_; }
+
+ private:
+  void ReadText() {
+    try {
+      bool more = true;
+      while (more) {
+        TextBlock block;
+        block.text.resize(kTextBlock);
+        const std::size_t count = source_.Read(block.text.data(), block.text.size());
+        block.text.resize(count);
+        block.is_last = count < kTextBlock;
+        block.progress = block.is_last ? 1.0 : source_.Progress();
+        block.truncated = source_.Truncated();
+        block.trailing_bytes = source_.TrailingBytes();
+        more = !block.is_last;
+        more = text_.Push(std::move(block)) && more;
+      }
+    } catch (...) {
+      text_error_ = std::current_exception();
+    }
+    text_.Close();
+  }
+
+  void ReadLines() {
+    try {
+      LineReader lines(options_, calibration_);
+      LineSplitter splitter;
+      bool last_line_good = true;
+      const auto on_line = [&](const char* begin, const char* end, bool too_long) {
+        last_line_good = lines.Add(begin, end, too_long);
+      };
+      while (std::optional<TextBlock> block = text_.Pop()) {
+        splitter.Add(block->text, on_line);
+        if (block->is_last) {
+          if (splitter.Finish(on_line) && !last_line_good) lines.SetTruncated();
+          if (block->truncated) lines.SetTruncated();
+          lines.SetTrailingBytes(block->trailing_bytes);
+          lines.Finish();
+        }
+        if (!HandOver(&lines, block->progress)) break;
+      }
+      error_ = text_error_;
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    text_.Close();
+    batches_.Close();
+  }
+
+  /// Passes on what is ready; false when nobody wants it any more.
+  bool HandOver(LineReader* lines, double progress) {
+    bool more = true;
+    while (more) {
+      Batch batch;
+      while (batch.observations.size() < kBatch) {
+        std::optional<Observation> observation = lines->Next();
+        more = observation.has_value();
+        if (!more) break;
+        batch.observations.push_back(std::move(*observation));
+      }
+      batch.statistics = lines->Statistics();
+      batch.progress = progress;
+      if (!batches_.Push(std::move(batch))) return false;
+    }
+    return true;
+  }
+
+  void Stop() {
+    text_.Close();
+    batches_.Close();
+    if (text_thread_.joinable()) text_thread_.join();
+    if (line_thread_.joinable()) line_thread_.join();
+  }
+
+  const LogOptions options_;
+  const ScanCalibration calibration_;
+  TextSource source_;
+  BoundedQueue<TextBlock> text_{kTextBlocksAhead};
+  BoundedQueue<Batch> batches_{kBatchesAhead};
+  // Written before the queue behind it is closed, read after.
+  std::exception_ptr text_error_;
+  std::exception_ptr error_;
+  std::thread text_thread_;
+  std::thread line_thread_;
+
+  std::vector<Observation> batch_;
+  std::size_t position_ = 0;
+  LogStatistics statistics_;
+  double progress_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<LogReader> OpenCarmenLog(const std::string& path, const LogOptions& options) {
+  return std::make_unique<CarmenReader>(path, options);
+}
+
+}  // namespace masked_mapper
