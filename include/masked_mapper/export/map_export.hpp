@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that a finished map is written as, except the saved map itself and the report:
+//
+//   building.bt  building.pcd  building.ply  graph.g2o  trajectory.tum  nodes.tum  closures.csv
+//   summary.json  floors/<label>.{pcd,pgm,yaml,g2o}
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "masked_mapper/export/summary_file.hpp"
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/rendering/octree.hpp"
+
+namespace masked_mapper {
+
+struct ExportOptions {
+  GridOptions grid;  ///< its `threads` are used for writing, too
+  OctreeOptions octree;
+};
+
+/// The grid of each floor, by FloorId, from all kept scans but those in transit.
+std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options);
+
+/// Writes all files into `folder`, which exists (OutputFolder). To the seconds of the result those
+/// of rendering and export are added, in the returned summary as in the file. Throws InputError for
+/// a label that cannot name a file and for a building too large for its cells, std::runtime_error
+/// when a file cannot be written.
+Summary WriteMap(const MappingResult& result, const RunDescription& run,
+                 const ExportOptions& options, const std::filesystem::path& folder);
+
+}  // namespace masked_mapper

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers as text, the same under every locale.
+#pragma once
+
+#include <string>
+
+namespace masked_mapper {
+
+/// With so many decimals; zero has no sign.
+std::string FixedText(double value, int decimals);
+
+/// The shortest decimals that read back as the same number, without an exponent.
+std::string ExactText(double value);
+
+}  // namespace masked_mapper

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OctoMap's binary format (.bt): free, occupied, or unknown.
+#pragma once
+
+#include <filesystem>
+
+namespace octomap {
+class OcTree;
+}
+
+namespace masked_mapper {
+
+/// Throws std::runtime_error when the file cannot be written.
+void WriteOctomap(const octomap::OcTree& tree, const std::filesystem::path& path);
+
+}  // namespace masked_mapper

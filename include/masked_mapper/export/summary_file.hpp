@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run did and made, in numbers: for summary.json and the closing table.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/rendering/occupancy_grid.hpp"
+
+namespace masked_mapper {
+
+/// An option in force: its key and its value.
+using SettingValue = std::variant<bool, std::int64_t, double, std::string>;
+using Setting = std::pair<std::string, SettingValue>;
+
+/// What the run was asked to do.
+struct RunDescription {
+  std::string log;   ///< path as given
+  std::string mask;  ///< as given, e.g. "any(openings,eccentricity)"
+  std::vector<Setting> settings;
+};
+
+struct Summary {
+  struct Counts {
+    std::uint64_t observations = 0;
+    std::uint64_t scans = 0;
+    std::uint64_t nodes = 0;
+    std::uint64_t scan_nodes = 0;
+    std::uint64_t odometry_nodes = 0;
+    std::uint64_t attempted = 0;  ///< pairs offered to the matcher
+    std::uint64_t matched = 0;    ///< of these, matches above MinScore
+    std::uint64_t validated = 0;  ///< of these, closures in the final graph
+  };
+  struct FloorEntry {
+    std::string label;
+    double elevation_m = 0.0;
+    bool elevation_measured = false;
+    std::uint64_t nodes = 0;
+    double area_m2 = 0.0;  ///< known to be free or occupied
+  };
+
+  RunDescription run;
+  Counts counts;
+  std::vector<FloorEntry> floors;  ///< by FloorId, which is the field `label` of the clouds
+  /// Attempts that did not become closures, by reason; most frequent first.
+  std::vector<std::pair<std::string, std::uint64_t>> rejections;
+  StageSeconds seconds;
+  double peak_memory_mib = 0.0;
+  std::vector<std::string> warnings;
+};
+
+/// `grids` by FloorId. Seconds are the result's; the peak of memory is that of the process up to
+/// now.
+Summary Summarise(const MappingResult& result, const RunDescription& run,
+                  const std::vector<OccupancyGrid>& grids);
+
+/// As JSON, in a fixed order of keys. Throws std::runtime_error when the file cannot be written.
+void WriteSummary(const Summary& summary, const std::filesystem::path& path);
+
+}  // namespace masked_mapper

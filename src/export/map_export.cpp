@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/export/map_export.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <future>
+#include <string>
+
+#include "masked_mapper/export/closures_file.hpp"
+#include "masked_mapper/export/floor_label.hpp"
+#include "masked_mapper/export/g2o_file.hpp"
+#include "masked_mapper/export/occupancy_grid_file.hpp"
+#include "masked_mapper/export/octomap_file.hpp"
+#include "masked_mapper/export/point_cloud_file.hpp"
+#include "masked_mapper/export/trajectory_file.hpp"
+#include "masked_mapper/rendering/point_cloud.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void WriteOctree(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids,
+                 const OctreeOptions& options, const std::filesystem::path& path) {
+  std::vector<FloorLayer> layers;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    layers.push_back({&grids[i], graph.floors()[i].elevation});
+  }
+  WriteOctomap(*BuildOctree(layers, options), path);
+}
+
+void WriteFloors(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids,
+                 const std::filesystem::path& folder) {
+  const std::vector<Colour> colours = FloorColours(graph.floors());
+  ColouredCloud building;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const Floor& floor = graph.floors()[i];
+    const ColouredCloud cloud =
+        Coloured(WallCloud(grids[i], floor.elevation, static_cast<std::uint32_t>(i)), colours);
+    const std::string stem = (folder / "floors" / floor.label).string();
+    WritePcd(cloud, stem + ".pcd");
+    WriteOccupancyGrid(grids[i], stem);
+    WriteG2o(graph, static_cast<FloorId>(i), stem + ".g2o");
+    building += cloud;
+  }
+  WritePcd(building, folder / "building.pcd");
+  WritePly(building, folder / "building.ply");
+}
+
+}  // namespace
+
+std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options) {
+  std::vector<PosedScan> scans;
+  scans.reserve(result.kept_scans.size());
+  for (const KeptScan& kept : result.kept_scans) {
+    const TrajectoryPose& pose = result.trajectory.at(kept.trajectory_index);
+    if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
+  }
+  std::vector<OccupancyGrid> grids;
+  for (std::size_t floor = 0; floor < result.graph.floors().size(); ++floor) {
+    grids.push_back(RenderGrid(scans, static_cast<std::int32_t>(floor), options));
+  }
+  return grids;
+}
+
+Summary WriteMap(const MappingResult& result, const RunDescription& run,
+                 const ExportOptions& options, const std::filesystem::path& folder) {
+  CheckFloorLabels(result.graph.floors());
+  const auto rendering_start = Clock::now();
+  const std::vector<OccupancyGrid> grids = RenderFloors(result, options.grid);
+  const double rendering_seconds = SecondsSince(rendering_start);
+
+  const auto export_start = Clock::now();
+  std::filesystem::create_directory(folder / "floors");
+  // The octree takes about as long as all the rest.
+  auto octree =
+      std::async(options.grid.threads > 1 ? std::launch::async : std::launch::deferred,
+                 [&] { WriteOctree(result.graph, grids, options.octree, folder / "building.bt"); });
+  WriteFloors(result.graph, grids, folder);
+  WriteTrajectory(result.trajectory, result.graph.floors(), folder / "trajectory.tum");
+  WriteNodes(result.graph, folder / "nodes.tum");
+  WriteG2o(result.graph, folder / "graph.g2o");
+  WriteClosures(result.attempts, result.graph, folder / "closures.csv");
+  octree.get();
+
+  Summary summary = Summarise(result, run, grids);
+  summary.seconds.rendering += rendering_seconds;
+  summary.seconds.export_ += SecondsSince(export_start);
+  summary.seconds.total += SecondsSince(rendering_start);
+  WriteSummary(summary, folder / "summary.json");
+  return summary;
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/export/point_cloud_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <string>
+
+#include "masked_mapper/export/output_file.hpp"
+
+namespace masked_mapper {
+namespace {
+
+// From dark to light, each clear before black and before white.
+constexpr std::array<Colour, 4> kRamp = {Colour{52, 74, 160}, Colour{32, 138, 160},
+                                         Colour{104, 184, 106}, Colour{244, 218, 84}};
+
+Colour OnRamp(double fraction) {
+  const double place = fraction * static_cast<double>(kRamp.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), kRamp.size() - 2);
+  const double share = place - static_cast<double>(below);
+  const auto mix = [share](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround((1.0 - share) * a + share * b));
+  };
+  const Colour& a = kRamp[below];
+  const Colour& b = kRamp[below + 1];
+  return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
+}
+
+// Both formats are little-endian here, and so is every machine that this is built for.
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+
+template <typename T>
+void Append(const T& value, std::string* bytes) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  bytes->append(raw, sizeof(T));
+}
+
+template <typename AppendPoint>
+void WriteCloud(const std::string& header, const ColouredCloud& cloud, const AppendPoint& append,
+                const std::filesystem::path& path) {
+  std::string bytes = header;
+  bytes.reserve(header.size() + cloud.size() * 20);
+  for (const pcl::PointXYZRGBL& point : cloud) append(point, &bytes);
+  WriteFile(path, bytes);
+}
+
+}  // namespace
+
+std::vector<Colour> FloorColours(const std::vector<Floor>& floors) {
+  std::vector<std::size_t> upwards(floors.size());
+  std::iota(upwards.begin(), upwards.end(), std::size_t{0});
+  std::stable_sort(upwards.begin(), upwards.end(), [&floors](std::size_t a, std::size_t b) {
+    return floors[a].elevation < floors[b].elevation;
+  });
+  std::vector<Colour> colours(floors.size());
+  const double steps = std::max<double>(1.0, static_cast<double>(floors.size()) - 1.0);
+  for (std::size_t place = 0; place < upwards.size(); ++place) {
+    colours[upwards[place]] = OnRamp(static_cast<double>(place) / steps);
+  }
+  return colours;
+}
+
+ColouredCloud Coloured(const pcl::PointCloud<pcl::PointXYZL>& cloud,
+                       const std::vector<Colour>& colours) {
+  ColouredCloud coloured;
+  coloured.reserve(cloud.size());
+  for (const pcl::PointXYZL& point : cloud) {
+    assert(point.label < colours.size());
+    const Colour& colour = colours[point.label];
+    coloured.push_back(
+        {point.x, point.y, point.z, colour.red, colour.green, colour.blue, point.label});
+  }
+  return coloured;
+}
+
+void WritePcd(const ColouredCloud& cloud, const std::filesystem::path& path) {
+  const std::string count = std::to_string(cloud.size());
+  const std::string header =
+      "# .PCD v0.7 - Point Cloud Data file format\n"
+      "VERSION 0.7\n"
+      "FIELDS x y z rgba label\n"
+      "SIZE 4 4 4 4 4\n"
+      "TYPE F F F U U\n"
+      "COUNT 1 1 1 1 1\n"
+      "WIDTH " +
+      count +
+      "\n"
+      "HEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\n"
+      "POINTS " +
+      count +
+      "\n"
+      "DATA binary\n";
+  WriteCloud(
+      header, cloud,
+      [](const pcl::PointXYZRGBL& point, std::string* bytes) {
+        Append(point.x, bytes);
+        Append(point.y, bytes);
+        Append(point.z, bytes);
+        Append(point.rgba, bytes);
+        Append(point.label, bytes);
+      },
+      path);
+}
+
+void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
+  const std::string header =
+      "ply\n"
+      "format binary_little_endian 1.0\n"
+      "element vertex " +
+      std::to_string(cloud.size()) +
+      "\n"
+      "property float x\n"
+      "property float y\n"
+      "property float z\n"
+      "property uchar red\n"
+      "property uchar green\n"
+      "property uchar blue\n"
+      "property uint label\n"
+      "end_header\n";
+  WriteCloud(
+      header, cloud,
+      [](const pcl::PointXYZRGBL& point, std::string* bytes) {
+        Append(point.x, bytes);
+        Append(point.y, bytes);
+        Append(point.z, bytes);
+        Append(point.r, bytes);
+        Append(point.g, bytes);
+        Append(point.b, bytes);
+        Append(point.label, bytes);
+      },
+      path);
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/export/summary_file.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "masked_mapper/export/closures_file.hpp"
+#include "masked_mapper/export/number_text.hpp"
+#include "masked_mapper/export/output_file.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double PeakMemoryMib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+// JSON has no word for what is not finite.
+double Rounded(double value, double per_unit) {
+  return std::isfinite(value) ? std::round(value * per_unit) / per_unit : 0.0;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> RejectionsOf(
+    const std::vector<ClosureAttempt>& attempts) {
+  std::map<std::string, std::uint64_t> by_reason;
+  for (const ClosureAttempt& attempt : attempts) {
+    if (attempt.state == ClosureState::kValidated) continue;
+    ++by_reason[attempt.reason.empty() ? StateName(attempt.state) : attempt.reason];
+  }
+  std::vector<std::pair<std::string, std::uint64_t>> sorted(by_reason.begin(), by_reason.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return sorted;
+}
+
+Summary::Counts CountsOf(const MappingResult& result) {
+  const auto attempts_with = [&result](const auto& condition) {
+    return static_cast<std::uint64_t>(
+        std::count_if(result.attempts.begin(), result.attempts.end(),
+                      [&](const ClosureAttempt& attempt) { return condition(attempt.state); }));
+  };
+  const LogStatistics& log = result.log;
+  Summary::Counts counts;
+  counts.observations =
+      log.scans + log.odometry + log.pressure + log.acceleration + log.floor_labels;
+  counts.scans = result.trajectory.size();
+  counts.nodes = result.graph.nodes().size();
+  counts.scan_nodes = static_cast<std::uint64_t>(
+      std::count_if(result.graph.nodes().begin(), result.graph.nodes().end(),
+                    [](const Node& node) { return node.HasScan(); }));
+  counts.odometry_nodes = counts.nodes - counts.scan_nodes;
+  counts.attempted = result.attempts.size();
+  counts.matched =
+      attempts_with([](ClosureState state) { return state != ClosureState::kRejectedScore; });
+  counts.validated =
+      attempts_with([](ClosureState state) { return state == ClosureState::kValidated; });
+  return counts;
+}
+
+Json CountsJson(const Summary::Counts& counts) {
+  return {{"observations", counts.observations},
+          {"scans", counts.scans},
+          {"nodes", counts.nodes},
+          {"scan_nodes", counts.scan_nodes},
+          {"odometry_nodes", counts.odometry_nodes},
+          {"attempted", counts.attempted},
+          {"matched", counts.matched},
+          {"validated", counts.validated}};
+}
+
+Json FloorsJson(const std::vector<Summary::FloorEntry>& floors) {
+  Json json = Json::array();
+  for (const Summary::FloorEntry& floor : floors) {
+    json.push_back({{"label", floor.label},
+                    {"elevation_m", Rounded(floor.elevation_m, 1000.0)},
+                    {"elevation_measured", floor.elevation_measured},
+                    {"nodes", floor.nodes},
+                    {"area_m2", Rounded(floor.area_m2, 100.0)}});
+  }
+  return json;
+}
+
+Json SecondsJson(const StageSeconds& seconds) {
+  const auto rounded = [](double value) { return Rounded(value, 1e4); };
+  return {{"read", rounded(seconds.read)},
+          {"motion", rounded(seconds.motion)},
+          {"mask", rounded(seconds.mask)},
+          {"projection", rounded(seconds.projection)},
+          {"matching", rounded(seconds.matching)},
+          {"validation", rounded(seconds.validation)},
+          {"optimisation", rounded(seconds.optimisation)},
+          {"rendering", rounded(seconds.rendering)},
+          {"export", rounded(seconds.export_)},
+          {"total", rounded(seconds.total)}};
+}
+
+Json SettingsJson(const std::vector<Setting>& settings) {
+  Json json = Json::object();
+  for (const Setting& setting : settings) {
+    const auto* number = std::get_if<double>(&setting.second);
+    if (number != nullptr && !std::isfinite(*number)) {
+      json[setting.first] = ExactText(*number);
+      continue;
+    }
+    std::visit([&](const auto& value) { json[setting.first] = value; }, setting.second);
+  }
+  return json;
+}
+
+}  // namespace
+
+Summary Summarise(const MappingResult& result, const RunDescription& run,
+                  const std::vector<OccupancyGrid>& grids) {
+  Summary summary;
+  summary.run = run;
+  summary.counts = CountsOf(result);
+  const std::vector<Floor>& floors = result.graph.floors();
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    const auto nodes = static_cast<std::uint64_t>(
+        std::count_if(result.graph.nodes().begin(), result.graph.nodes().end(),
+                      [i](const Node& node) { return static_cast<std::size_t>(node.floor) == i; }));
+    summary.floors.push_back({floors[i].label, floors[i].elevation, floors[i].elevation_measured,
+                              nodes, KnownArea(grids.at(i))});
+  }
+  summary.rejections = RejectionsOf(result.attempts);
+  summary.seconds = result.seconds;
+  summary.peak_memory_mib = PeakMemoryMib();
+  summary.warnings = result.warnings;
+  return summary;
+}
+
+void WriteSummary(const Summary& summary, const std::filesystem::path& path) {
+  const Json json = {{"log", summary.run.log},
+                     {"mask", summary.run.mask},
+                     {"counts", CountsJson(summary.counts)},
+                     {"floors", FloorsJson(summary.floors)},
+                     {"seconds", SecondsJson(summary.seconds)},
+                     {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
+                     {"options", SettingsJson(summary.run.settings)},
+                     {"warnings", summary.warnings}};
+  // A path may hold bytes that are no UTF-8.
+  WriteFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace masked_mapper
