@@ -3,29 +3,17 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <memory>
-#include <queue>
 #include <unordered_map>
 
 namespace masked_mapper {
 namespace {
 
-constexpr int kBlock = 8;  // children of a block, per direction, are at most this many
-constexpr std::uint32_t kMaxCount = 128;   // of points merged in one coarse cell
-constexpr std::uint32_t kMaxWeight = 257;  // of points whose bytes add up within 16 bits
 constexpr double kUnset = -1e300;
-
-// Points that fall into one cell of a level, relative to the table's first cell there.
-struct BinnedPoint {
-  std::int32_t x;
-  std::int32_t y;
-  std::uint32_t count;
-};
-
-using Sums = std::array<std::array<std::uint32_t, kBlock>, kBlock>;  // [y][x]
+// Measured: 4 x 4 children share the reading of a point's row, and skip a level of the queue.
+constexpr int kLevelsPerStep = 2;
 
 // A function of its own, never inlined: both searches must round alike.
 __attribute__((noinline)) double Chi2(const SearchProblem& problem, const GridPose& pose) {
@@ -88,100 +76,6 @@ double SmallestChi2(const SearchProblem& problem, std::int32_t angle, std::int32
   return std::max(0.0, chi2 - slack);
 }
 
-// The points of a problem rotated by each angle of its grid, and binned at each level when first
-// asked for.
-class RotatedPoints {
- public:
-  explicit RotatedPoints(const SearchProblem& problem)
-      : problem_(problem),
-        levels_(static_cast<std::size_t>(problem.table->levels())),
-        binned_((static_cast<std::size_t>(problem.grid.half_angle) * 2 + 1) * levels_) {}
-
-  const std::vector<BinnedPoint>& At(std::int32_t angle, int level) {
-    const std::size_t slice = static_cast<std::size_t>(angle + problem_.grid.half_angle) * levels_;
-    std::vector<BinnedPoint>& binned = binned_[slice + static_cast<std::size_t>(level)];
-    if (binned.empty()) {
-      std::vector<BinnedPoint>& finest = binned_[slice];
-      if (finest.empty()) Rotate(angle, &finest);
-      if (level > 0) Bin(finest, level, &binned);
-    }
-    return binned;
-  }
-
- private:
-  void Rotate(std::int32_t angle, std::vector<BinnedPoint>* cells) const {
-    const LookupTable& table = *problem_.table;
-    const Pose2 pose = problem_.grid.At({angle, 0, 0});
-    const double c = std::cos(pose.theta);
-    const double s = std::sin(pose.theta);
-    const LookupTable::Level& level = table.level(0);
-    cells->reserve(problem_.points_in_query->size());
-    for (const Eigen::Vector2d& point : *problem_.points_in_query) {
-      const TableCell cell = table.CellAt(pose.x + c * point.x() - s * point.y(),
-                                          pose.y + s * point.x() + c * point.y());
-      cells->push_back({cell.x - level.x0, cell.y - level.y0, 1});
-    }
-  }
-
-  // Level 0 begins on a cell of every level, so positions relative to it may be shifted.
-  static void Bin(const std::vector<BinnedPoint>& cells, int level,
-                  std::vector<BinnedPoint>* binned) {
-    binned->reserve(cells.size());
-    for (const BinnedPoint& cell : cells) {
-      const std::int32_t x = cell.x >> level;
-      const std::int32_t y = cell.y >> level;
-      // Points come in the order of beams, so those of one cell mostly follow each other.
-      if (!binned->empty() && binned->back().x == x && binned->back().y == y &&
-          binned->back().count < kMaxCount) {
-        ++binned->back().count;
-      } else {
-        binned->push_back({x, y, 1});
-      }
-    }
-  }
-
-  const SearchProblem& problem_;
-  std::size_t levels_;
-  std::vector<std::vector<BinnedPoint>> binned_;
-};
-
-// Sums of the table over the points, for the kBlock x kBlock offsets from (x, y) on, at one level.
-Sums SumBlock(const LookupTable::Level& level, const std::vector<BinnedPoint>& points,
-              std::int32_t x, std::int32_t y) {
-  static_assert(LookupTable::kPadding >= kBlock, "blocks are read past the table's end");
-  Sums sums{};
-  std::array<std::array<std::uint16_t, kBlock>, kBlock> part{};
-  std::uint32_t weight = 0;
-  const auto flush = [&] {
-    for (int row = 0; row < kBlock; ++row) {
-      for (int column = 0; column < kBlock; ++column) {
-        sums[row][column] += part[row][column];
-        part[row][column] = 0;
-      }
-    }
-    weight = 0;
-  };
-  const auto end_x = static_cast<std::uint32_t>(level.width + kBlock);
-  const auto end_y = static_cast<std::uint32_t>(level.height + kBlock);
-  for (const BinnedPoint& point : points) {
-    const std::int32_t left = point.x + x;
-    const std::int32_t bottom = point.y + y;
-    if (static_cast<std::uint32_t>(left + kBlock) >= end_x) continue;
-    if (static_cast<std::uint32_t>(bottom + kBlock) >= end_y) continue;
-    if (weight + point.count > kMaxWeight) flush();
-    weight += point.count;
-    const auto count = static_cast<std::uint16_t>(point.count);
-    const std::uint8_t* from = level.data + bottom * level.stride + left;
-    for (int row = 0; row < kBlock; ++row, from += level.stride) {
-      for (int column = 0; column < kBlock; ++column) {
-        part[row][column] = static_cast<std::uint16_t>(part[row][column] + count * from[column]);
-      }
-    }
-  }
-  flush();
-  return sums;
-}
-
 // Offsets [x 2^level, (x + 1) 2^level) x the same for y, at one angle of one problem.
 struct Block {
   double bound;
@@ -190,15 +84,9 @@ struct Block {
   GridPose pose;
 };
 
+// The order of the queue. No answer depends on that of equal bounds.
 struct IsWorse {
-  bool operator()(const Block& a, const Block& b) const {
-    if (a.bound != b.bound) return a.bound < b.bound;
-    if (a.problem != b.problem) return a.problem > b.problem;
-    if (a.level != b.level) return a.level > b.level;
-    if (a.pose.angle != b.pose.angle) return a.pose.angle > b.pose.angle;
-    if (a.pose.x != b.pose.x) return a.pose.x > b.pose.x;
-    return a.pose.y > b.pose.y;
-  }
+  bool operator()(const Block& a, const Block& b) const { return a.bound < b.bound; }
 };
 
 bool IsBefore(const GridPose& a, const GridPose& b) {
@@ -216,98 +104,146 @@ void Offer(const SearchProblem& problem, const GridPose& pose, double score, Sea
   *result = {true, pose, score, objective};
 }
 
-using Queue = std::priority_queue<Block, std::vector<Block>, IsWorse>;
-
+// The search of one problem; its blocks wait in a queue that all problems share.
 class Search {
  public:
   Search(const SearchProblem& problem, std::int32_t index)
-      : problem_(problem), index_(index), points_(problem) {
+      : problem_(problem),
+        index_(index),
+        count_(problem.points_in_query->size()),
+        sums_(*problem.table, *problem.points_in_query, problem.grid) {
     result_.objective = kUnset;
+    if (count_ > 0) RaiseNeeded(problem.min_score);
   }
 
-  void PushRoots(Queue* queue) {
-    if (problem_.points_in_query->empty()) return;
+  void AddRoots(std::vector<Block>* blocks) {
+    if (count_ == 0) return;
     const SearchGrid& grid = problem_.grid;
     const int level = problem_.table->levels() - 1;
     for (std::int32_t angle = -grid.half_angle; angle <= grid.half_angle; ++angle) {
-      for (std::int32_t y = -grid.half_y >> level; y <= grid.half_y >> level; y += kBlock) {
-        for (std::int32_t x = -grid.half_x >> level; x <= grid.half_x >> level; x += kBlock) {
-          Evaluate(level, {angle, x, y}, kBlock, queue);
+      for (std::int32_t y = -grid.half_y >> level; y <= grid.half_y >> level; y += kSize) {
+        for (std::int32_t x = -grid.half_x >> level; x <= grid.half_x >> level; x += kSize) {
+          Evaluate(level, {angle, x, y}, kSize, blocks);
         }
       }
     }
   }
 
-  void Expand(const Block& block, Queue* queue) {
-    if (block.bound < result_.objective) return;
-    Evaluate(block.level - 1, {block.pose.angle, 2 * block.pose.x, 2 * block.pose.y}, 2, queue);
+  // Whether a block of this search may hold its answer.
+  bool MayHold(const Block& block) const { return block.bound >= result_.objective; }
+
+  // Appends the blocks within this one that may hold the answer.
+  void Expand(const Block& block, std::vector<Block>* blocks) {
+    const int level = std::max(block.level - kLevelsPerStep, 0);
+    const int size = 1 << (block.level - level);
+    Evaluate(level, {block.pose.angle, block.pose.x * size, block.pose.y * size}, size, blocks);
   }
 
   SearchResult Result() const {
     SearchResult result = result_;
     if (!result.found) {
       result.objective = 0.0;
-      result.score = best_dropped_;
+      result.score = count_ > 0 ? Score(largest_dropped_, count_) : 0.0;
     }
     return result;
   }
 
  private:
-  // Sums up the `size` x `size` blocks of a level from `first` on; those that may hold the answer
-  // go to the queue, or at level 0 become the answer so far.
-  void Evaluate(int level, const GridPose& first, int size, Queue* queue) {
+  static constexpr int kSize = BlockSums::kSize;
+
+  // Looks at `size` x `size` blocks of a level from `first` on. Those that may hold the answer are
+  // appended; at level 0 the best becomes the answer so far.
+  void Evaluate(int level, const GridPose& first, int size, std::vector<Block>* blocks) {
     const SearchGrid& grid = problem_.grid;
-    const std::size_t count = problem_.points_in_query->size();
-    const Sums sums =
-        SumBlock(problem_.table->level(level), points_.At(first.angle, level), first.x, first.y);
-    const std::int32_t span = 1 << level;
-    for (int row = 0; row < size; ++row) {
-      const std::int32_t y0 = std::max((first.y + row) * span, -grid.half_y);
-      const std::int32_t y1 = std::min((first.y + row) * span + span - 1, grid.half_y);
-      if (y0 > y1) continue;
-      for (int column = 0; column < size; ++column) {
-        const std::int32_t x0 = std::max((first.x + column) * span, -grid.half_x);
-        const std::int32_t x1 = std::min((first.x + column) * span + span - 1, grid.half_x);
-        if (x0 > x1) continue;
-        const double score = Score(sums[row][column], count);
-        if (score < problem_.min_score) {
-          best_dropped_ = std::max(best_dropped_, score);
+    const std::int32_t columns = std::min(size, (grid.half_x >> level) - first.x + 1);
+    const std::int32_t rows = std::min(size, (grid.half_y >> level) - first.y + 1);
+    const std::int32_t first_column = std::max(0, (-grid.half_x >> level) - first.x);
+    const std::int32_t first_row = std::max(0, (-grid.half_y >> level) - first.y);
+    const BlockSums::Sums sums =
+        sums_.At(first.angle, level, first.x, first.y, rows <= 2 ? 2 : (rows <= 4 ? 4 : 8));
+    for (std::int32_t row = first_row; row < rows; ++row) {
+      for (std::int32_t column = first_column; column < columns; ++column) {
+        const std::uint32_t sum =
+            sums[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+        if (sum < needed_) {
+          if (!result_.found) largest_dropped_ = std::max(largest_dropped_, sum);
           continue;
         }
-        if (score < result_.objective) continue;
-        const GridPose pose{first.angle, first.x + column, first.y + row};
-        if (level == 0) {
-          Offer(problem_, pose, score, &result_);
-          continue;
-        }
-        const double chi2 = SmallestChi2(problem_, first.angle, x0, x1, y0, y1);
-        const double bound = score - problem_.prior_weight * chi2;
-        if (bound >= result_.objective) queue->push({bound, index_, level, pose});
+        Consider(level, {first.angle, first.x + column, first.y + row}, Score(sum, count_), blocks);
       }
     }
   }
 
+  void Consider(int level, const GridPose& pose, double score, std::vector<Block>* blocks) {
+    if (level == 0) {
+      Offer(problem_, pose, score, &result_);
+      RaiseNeeded(result_.objective);
+      return;
+    }
+    const SearchGrid& grid = problem_.grid;
+    const std::int32_t span = 1 << level;
+    const double chi2 = SmallestChi2(problem_, pose.angle, std::max(pose.x * span, -grid.half_x),
+                                     std::min(pose.x * span + span - 1, grid.half_x),
+                                     std::max(pose.y * span, -grid.half_y),
+                                     std::min(pose.y * span + span - 1, grid.half_y));
+    const double bound = score - problem_.prior_weight * chi2;
+    if (bound >= result_.objective) blocks->push_back({bound, index_, level, pose});
+  }
+
+  // From now on sums are needed whose score reaches `score`: exactly those from needed_ on.
+  void RaiseNeeded(double score) {
+    const double sum = std::ceil(score * 255.0 * static_cast<double>(count_));
+    if (!(sum > needed_)) return;
+    needed_ = static_cast<std::uint32_t>(std::min(sum, 4294967295.0));
+    while (needed_ > 0 && Score(needed_ - 1, count_) >= score) --needed_;
+    while (Score(needed_, count_) < score && needed_ < 4294967295U) ++needed_;
+  }
+
   const SearchProblem& problem_;
   std::int32_t index_;
-  RotatedPoints points_;
+  std::size_t count_;
+  BlockSums sums_;
   SearchResult result_;
-  double best_dropped_ = 0.0;
+  std::uint32_t needed_ = 0;
+  std::uint32_t largest_dropped_ = 0;
 };
 
 }  // namespace
 
 std::vector<SearchResult> SearchJointly(const std::vector<SearchProblem>& problems) {
   std::vector<std::unique_ptr<Search>> searches;
-  Queue queue;
+  std::vector<std::size_t> waiting;  // blocks of each problem; 0: its answer is known
+  std::vector<Block> queue;          // a heap, the best bound first
   for (const SearchProblem& problem : problems) {
+    const std::size_t before = queue.size();
     searches.push_back(
         std::make_unique<Search>(problem, static_cast<std::int32_t>(searches.size())));
-    searches.back()->PushRoots(&queue);
+    searches.back()->AddRoots(&queue);
+    waiting.push_back(queue.size() - before);
   }
-  while (!queue.empty()) {
-    const Block block = queue.top();
-    queue.pop();
-    searches[static_cast<std::size_t>(block.problem)]->Expand(block, &queue);
+  std::size_t unanswered = 0;
+  for (const std::size_t blocks : waiting) unanswered += blocks > 0 ? 1U : 0U;
+  std::make_heap(queue.begin(), queue.end(), IsWorse());
+  std::vector<Block> children;
+  while (unanswered > 0) {
+    std::pop_heap(queue.begin(), queue.end(), IsWorse());
+    const Block block = queue.back();
+    queue.pop_back();
+    const auto index = static_cast<std::size_t>(block.problem);
+    if (waiting[index] == 0) continue;
+    Search& search = *searches[index];
+    // What comes later of this problem has no better bound.
+    waiting[index] = search.MayHold(block) ? waiting[index] - 1 : 0;
+    if (search.MayHold(block)) {
+      children.clear();
+      search.Expand(block, &children);
+      waiting[index] += children.size();
+      for (const Block& child : children) {
+        queue.push_back(child);
+        std::push_heap(queue.begin(), queue.end(), IsWorse());
+      }
+    }
+    if (waiting[index] == 0) --unanswered;
   }
   std::vector<SearchResult> results;
   for (const std::unique_ptr<Search>& search : searches) results.push_back(search->Result());
@@ -318,22 +254,25 @@ SearchResult SearchExhaustively(const SearchProblem& problem) {
   SearchResult result;
   const SearchGrid& grid = problem.grid;
   const LookupTable& table = *problem.table;
+  const LookupTable::Level& cells = table.level(0);
   const std::size_t count = problem.points_in_query->size();
   if (count == 0) return result;
   double best_dropped = 0.0;
+  std::vector<std::int32_t> cells_x(count);
+  std::vector<std::int32_t> cells_y(count);
   for (std::int32_t angle = -grid.half_angle; angle <= grid.half_angle; ++angle) {
-    const Pose2 pose = grid.At({angle, 0, 0});
-    const double c = std::cos(pose.theta);
-    const double s = std::sin(pose.theta);
-    std::vector<TableCell> cells;
-    for (const Eigen::Vector2d& point : *problem.points_in_query) {
-      cells.push_back(table.CellAt(pose.x + c * point.x() - s * point.y(),
-                                   pose.y + s * point.x() + c * point.y()));
-    }
+    Pose2 pose = grid.T_reference_query_guess;
+    pose.theta += angle * grid.angle_step;
+    CellsAtPose(table, *problem.points_in_query, pose, cells_x.data(), cells_y.data());
     for (std::int32_t x = -grid.half_x; x <= grid.half_x; ++x) {
       for (std::int32_t y = -grid.half_y; y <= grid.half_y; ++y) {
         std::uint32_t sum = 0;
-        for (const TableCell& cell : cells) sum += table.Value(0, {cell.x + x, cell.y + y});
+        for (std::size_t i = 0; i < count; ++i) {
+          const std::int32_t column = cells_x[i] + x;
+          const std::int32_t row = cells_y[i] + y;
+          if (column < 0 || row < 0 || column >= cells.width || row >= cells.height) continue;
+          sum += cells.data[row * cells.stride + column];
+        }
         const double score = Score(sum, count);
         if (score < problem.min_score) {
           best_dropped = std::max(best_dropped, score);
@@ -345,6 +284,12 @@ SearchResult SearchExhaustively(const SearchProblem& problem) {
   }
   if (!result.found) result.score = best_dropped;
   return result;
+}
+
+Pose2 PoseOf(const SearchGrid& grid, const GridPose& pose) {
+  const Pose2& guess = grid.T_reference_query_guess;
+  return {guess.x + pose.x * grid.resolution_m, guess.y + pose.y * grid.resolution_m,
+          WrapAngle(guess.theta + pose.angle * grid.angle_step)};
 }
 
 Eigen::Matrix3d PriorRoot(const Eigen::Matrix3d& covariance, const SearchGrid& grid) {

@@ -187,7 +187,7 @@ class JointMatcher::Impl {
     if (!found.found) return result;
     result.outcome = MatchOutcome::kMatched;
     const RefinedMatch refined = RefineMatch(*problem.table, *problem.points_in_query,
-                                             problem.grid.At(found.best), options_.refine);
+                                             PoseOf(problem.grid, found.best), options_.refine);
     result.T_reference_query.mean = refined.T_reference_query.mean;
     result.T_reference_query.covariance = ResponseCovariance(
         *problem.table, *problem.points_in_query, refined.T_reference_query.mean, options_.refine);

@@ -14,11 +14,12 @@ namespace {
 constexpr double kBlurSigmas = 3.0;
 constexpr int kLargestRadius = 64;                   // cells; a wider blur is cut there
 constexpr double kLargestCoordinate = 1073741824.0;  // cells, 2^30
-constexpr double kJoinSpacing = 0.5;  // cells between the points that stand for a line
 
+// Rounds down without a call: truncation, corrected below zero.
 std::int32_t CellOf(double coordinate_in_cells) {
-  return static_cast<std::int32_t>(
-      std::floor(std::clamp(coordinate_in_cells, -kLargestCoordinate, kLargestCoordinate)));
+  const double clamped = std::clamp(coordinate_in_cells, -kLargestCoordinate, kLargestCoordinate);
+  const auto truncated = static_cast<std::int32_t>(clamped);
+  return truncated - static_cast<std::int32_t>(truncated > clamped);
 }
 
 std::vector<pcl::PointXY> UsablePoints(const ScanPoints& points, double max_range_m) {
@@ -26,13 +27,23 @@ std::vector<pcl::PointXY> UsablePoints(const ScanPoints& points, double max_rang
   usable.reserve(points.size());
   for (const pcl::PointXY& point : points) {
     // Not a number compares false.
-    if (std::hypot(double{point.x}, double{point.y}) <= max_range_m) usable.push_back(point);
+    if (std::sqrt(double{point.x} * point.x + double{point.y} * point.y) <= max_range_m)
+      usable.push_back(point);
   }
   return usable;
 }
 
 inline void MaxInto(std::uint8_t* values, const std::uint8_t* others) {
   for (int i = 0; i < 16; ++i) values[i] = std::max(values[i], others[i]);
+}
+
+void MaxOfThree(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c,
+                std::int32_t count, std::uint8_t* __restrict maxima) {
+  for (std::int32_t i = 0; i < count; ++i) maxima[i] = std::max(a[i], std::max(b[i], c[i]));
+}
+
+void EverySecond(const std::uint8_t* values, std::int32_t count, std::uint8_t* __restrict second) {
+  for (std::int32_t i = 0; i < count; ++i) second[i] = values[2 * i];
 }
 
 }  // namespace
@@ -81,7 +92,9 @@ const std::uint8_t* BlurKernels::Rows(int phase_x, int phase_y) const {
 
 LookupTable::LookupTable(const ScanPoints& points_in_frame, const LookupTableOptions& options,
                          const BlurKernels& kernels)
-    : resolution_(options.resolution_m), sigma_(options.sigma_m) {
+    : resolution_(options.resolution_m),
+      cells_per_m_(1.0 / options.resolution_m),
+      sigma_(options.sigma_m) {
   const std::vector<pcl::PointXY> points = UsablePoints(points_in_frame, options.max_range_m);
   if (points.empty()) {
     Allocate({0, 0}, {0, 0}, options.levels);
@@ -103,7 +116,9 @@ LookupTable::LookupTable(const ScanPoints& points_in_frame, const LookupTableOpt
 
 LookupTable::LookupTable(const ScanPoints& points_in_frame, const TableBounds& bounds,
                          const LookupTableOptions& options, const BlurKernels& kernels)
-    : resolution_(options.resolution_m), sigma_(options.sigma_m) {
+    : resolution_(options.resolution_m),
+      cells_per_m_(1.0 / options.resolution_m),
+      sigma_(options.sigma_m) {
   if (!(bounds.max_x > bounds.min_x && bounds.max_y > bounds.min_y)) {
     Allocate({0, 0}, {0, 0}, options.levels);
     return;
@@ -125,7 +140,7 @@ std::uint8_t LookupTable::Value(int level_index, TableCell cell) const {
 }
 
 TableCell LookupTable::CellAt(double x, double y) const {
-  return {CellOf(x / resolution_), CellOf(y / resolution_)};
+  return {CellOf(x * cells_per_m_), CellOf(y * cells_per_m_)};
 }
 
 // `low` is the first cell, `high` the one after the last.
@@ -160,15 +175,16 @@ void LookupTable::Allocate(TableCell low, TableCell high, int levels) {
 
 void LookupTable::Blur(const std::vector<pcl::PointXY>& points, double join_gap_m,
                        const BlurKernels& kernels) {
-  const double spacing = kJoinSpacing * resolution_;
+  // Near enough for the blur to show no beads.
+  const double spacing = std::max(0.5 * resolution_, sigma_ / 3.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     BlurPoint(points[i].x, points[i].y, kernels);
     if (i == 0 || !(join_gap_m > 0.0)) continue;
     const double dx = double{points[i].x} - points[i - 1].x;
     const double dy = double{points[i].y} - points[i - 1].y;
-    const double gap = std::hypot(dx, dy);
+    const double gap = std::sqrt(dx * dx + dy * dy);
     if (gap > join_gap_m) continue;
-    const int steps = static_cast<int>(std::ceil(gap / spacing));
+    const int steps = static_cast<int>(gap / spacing) + 1;
     for (int step = 1; step < steps; ++step) {
       const double fraction = static_cast<double>(step) / steps;
       BlurPoint(points[i - 1].x + fraction * dx, points[i - 1].y + fraction * dy, kernels);
@@ -178,13 +194,14 @@ void LookupTable::Blur(const std::vector<pcl::PointXY>& points, double join_gap_
 
 void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
   const Level& cells = levels_.front();
-  const TableCell cell = CellAt(x, y);
+  const double x_in_cells = x * cells_per_m_;
+  const double y_in_cells = y * cells_per_m_;
+  const TableCell cell{CellOf(x_in_cells), CellOf(y_in_cells)};
   const auto phase = [](double in_cells, std::int32_t index) {
     return std::clamp(static_cast<int>((in_cells - index) * BlurKernels::kPhases), 0,
                       BlurKernels::kPhases - 1);
   };
-  const std::uint8_t* kernel =
-      kernels.Rows(phase(x / resolution_, cell.x), phase(y / resolution_, cell.y));
+  const std::uint8_t* kernel = kernels.Rows(phase(x_in_cells, cell.x), phase(y_in_cells, cell.y));
   const int radius = kernels.radius();
   const int size = 2 * radius + 1;
   // 64 bits: a point far outside given bounds must not overflow.
@@ -198,7 +215,9 @@ void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
   for (std::int64_t row = first_row; row < end_row; ++row) {
     const std::uint8_t* from = kernel + row * kernels.row_bytes();
     std::uint8_t* to = Writable(cells) + (bottom + row) * cells.stride + left;
-    if (is_inside) {
+    if (is_inside && kernels.row_bytes() == 16) {
+      MaxInto(to, from);
+    } else if (is_inside) {
       for (int i = 0; i < kernels.row_bytes(); i += 16) MaxInto(to + i, from + i);
     } else {
       const std::int64_t first = std::max<std::int64_t>(0, -left);
@@ -209,25 +228,22 @@ void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
 }
 
 // Level l + 1 from level l: cell C of it spans the cells 2C, 2C + 1 and 2C + 2 of the finer level,
-// whose own spans overlap by all but one cell.
+// whose own spans overlap by all but one cell. Whole rows of bytes at a time, for the compiler to
+// turn into vector code.
 void LookupTable::BuildPyramid() {
-  std::vector<std::uint8_t> column_maxima;
+  const auto widest = static_cast<std::size_t>(levels_.front().width + 2 * kPadding);
+  std::vector<std::uint8_t> rows(2 * widest);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     const Level& fine = levels_[l];
     const Level& coarse = levels_[l + 1];
-    column_maxima.assign(static_cast<std::size_t>(fine.width + 2 * kPadding), 0);
-    std::uint8_t* maxima = column_maxima.data() + kPadding;
+    const std::int32_t count = fine.width + 4;  // from cell -2 on
+    std::uint8_t* const upward = rows.data();
+    std::uint8_t* const rightward = rows.data() + widest;
     for (std::int32_t y = -1; y < coarse.height; ++y) {
-      const std::uint8_t* row0 = fine.data + 2 * y * fine.stride;
-      const std::uint8_t* row1 = row0 + fine.stride;
-      const std::uint8_t* row2 = row1 + fine.stride;
-      for (std::int32_t x = -2; x <= fine.width; ++x) {
-        maxima[x] = std::max(row0[x], std::max(row1[x], row2[x]));
-      }
-      std::uint8_t* to = Writable(coarse) + y * coarse.stride;
-      for (std::int32_t x = -1; x < coarse.width; ++x) {
-        to[x] = std::max(maxima[2 * x], std::max(maxima[2 * x + 1], maxima[2 * x + 2]));
-      }
+      const std::uint8_t* row = fine.data + 2 * y * fine.stride - 2;
+      MaxOfThree(row, row + fine.stride, row + 2 * fine.stride, count, upward);
+      MaxOfThree(upward, upward + 1, upward + 2, count - 2, rightward);
+      EverySecond(rightward, coarse.width + 1, Writable(coarse) + y * coarse.stride - 1);
     }
   }
 }

@@ -20,6 +20,7 @@
 
 #include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/scan_matching/block_sums.hpp"
 #include "masked_mapper/scan_matching/lookup_table.hpp"
 
 namespace masked_mapper {
@@ -31,20 +32,8 @@ struct GridPose {
   std::int32_t y = 0;
 };
 
-struct SearchGrid {
-  Pose2 T_reference_query_guess;  ///< its centre
-  double resolution_m = 0.05;
-  double angle_step = 0.0;  ///< rad
-  std::int32_t half_angle = 0;
-  std::int32_t half_x = 0;
-  std::int32_t half_y = 0;
-
-  Pose2 At(const GridPose& pose) const {
-    const Pose2& guess = T_reference_query_guess;
-    return {guess.x + pose.x * resolution_m, guess.y + pose.y * resolution_m,
-            WrapAngle(guess.theta + pose.angle * angle_step)};
-  }
-};
+/// T_reference_query of a grid pose.
+Pose2 PoseOf(const SearchGrid& grid, const GridPose& pose);
 
 struct SearchProblem {
   const LookupTable* table = nullptr;
