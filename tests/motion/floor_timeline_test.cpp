@@ -26,5 +26,21 @@ TEST(FloorTimeline, IntervalsBeginAtTheirStart) {
   EXPECT_EQ(timeline.At(1e9).level, 1U);
 }
 
+TEST(FloorNames, CountFromTheFirstFloorOfTheLog) {
+  std::vector<FloorLevel> levels(4);
+  levels[1].elevation = -3.5;
+  levels[2].elevation = 7.0;
+  levels[3].elevation = 3.4;
+  EXPECT_EQ(FloorNames(levels), (std::vector<std::string>{"0", "-1", "2", "1"}));
+}
+
+TEST(FloorNames, LabelsWinAndAreNotTakenTwice) {
+  std::vector<FloorLevel> levels(3);
+  levels[0].label = "1";
+  levels[1].elevation = 3.5;
+  levels[2].elevation = 7.0;
+  EXPECT_EQ(FloorNames(levels), (std::vector<std::string>{"1", "1_", "2"}));
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -9,10 +9,13 @@
 namespace masked_mapper {
 
 struct FloorLevel {
-  std::string label;                ///< as said by the log; empty: named by its place in elevation
+  std::string label;                ///< as said by the log; empty: see FloorNames()
   double elevation = 0.0;           ///< m above the first level of the log
   double elevation_sigma = 0.0;     ///< m
   bool elevation_measured = false;  ///< false: a typical storey height was assumed
+  /// False: a change of floor was noticed, but not to which. The level may be one of the others,
+  /// which only the map itself can tell.
+  bool identity_known = true;
 };
 
 /// From `start` to the next interval's start the robot is on `level`, or between levels.
@@ -28,5 +31,9 @@ struct FloorTimeline {
 
   const FloorInterval& At(double stamp) const;
 };
+
+/// What each level is called: its label, else its place in the order of elevations, where the first
+/// level is `0`. Names differ: an underscore is added where a label took the place already.
+std::vector<std::string> FloorNames(const std::vector<FloorLevel>& levels);
 
 }  // namespace masked_mapper
