@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/floor_transit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The level of each spell between transits (one more than transits), numbered by first use.
+struct Assignment {
+  std::vector<std::size_t> level_of_spell;
+  std::vector<bool> identity_known;  ///< of each level
+
+  std::size_t AddLevel(bool known) {
+    identity_known.push_back(known);
+    return identity_known.size() - 1;
+  }
+};
+
+/// Spell by spell: the known level nearest to where the climb leads, if it is near enough.
+Assignment AssignInOrder(const std::vector<FloorTransit>& transits, const StoreyOptions& options) {
+  Assignment assignment;
+  std::vector<double> elevations = {0.0};
+  assignment.level_of_spell = {assignment.AddLevel(true)};
+  for (const FloorTransit& transit : transits) {
+    const std::size_t left = assignment.level_of_spell.back();
+    std::optional<std::size_t> reached;
+    if (transit.climb) {
+      const double elevation = elevations[left] + *transit.climb;
+      double nearest = 0.5 * options.min_gap;
+      for (std::size_t level = 0; level < elevations.size(); ++level) {
+        const double distance = std::abs(elevations[level] - elevation);
+        if (distance > nearest) continue;
+        nearest = distance;
+        reached = level;
+      }
+      // A climb too small for a floor, and none where it leads: still the floor that was left.
+      if (!reached && std::abs(*transit.climb) < LeastClimb(options)) reached = left;
+      if (!reached) elevations.push_back(elevation);
+    } else {
+      // From an unknown level on, elevations count from a zero of their own, out of all reach.
+      const double highest = *std::max_element(elevations.begin(), elevations.end());
+      elevations.push_back(highest + 1e4);
+    }
+    if (!reached) reached = assignment.AddLevel(transit.climb.has_value());
+    assignment.level_of_spell.push_back(*reached);
+  }
+  return assignment;
+}
+
+std::vector<LevelStep> StepsOf(const std::vector<FloorTransit>& transits,
+                               const Assignment& assignment) {
+  std::vector<LevelStep> steps;
+  for (std::size_t k = 0; k < transits.size(); ++k) {
+    const std::size_t from = assignment.level_of_spell[k];
+    const std::size_t to = assignment.level_of_spell[k + 1];
+    if (!transits[k].climb || from == to) continue;
+    steps.push_back({from, to, *transits[k].climb, std::max(transits[k].climb_sigma, 1e-3)});
+  }
+  return steps;
+}
+
+/// Levels that all transits together put nearer than half the smallest gap become one.
+Assignment MergedWhereNear(Assignment assignment, std::vector<LevelHeight> heights,
+                           const StoreyOptions& options) {
+  const auto find_equal = [&](std::size_t b) -> std::optional<std::size_t> {
+    for (std::size_t a = 0; a < b; ++a) {
+      const double gap = std::abs(heights[a].elevation - heights[b].elevation);
+      if (heights[a].measured && heights[b].measured && gap <= 0.5 * options.min_gap) return a;
+    }
+    return std::nullopt;
+  };
+  for (std::size_t b = 1; b < heights.size();) {
+    const std::optional<std::size_t> a = find_equal(b);
+    if (!a) {
+      ++b;
+      continue;
+    }
+    for (std::size_t& level : assignment.level_of_spell) {
+      if (level == b) level = *a;
+      if (level > b) --level;
+    }
+    heights.erase(heights.begin() + static_cast<std::ptrdiff_t>(b));
+    assignment.identity_known.erase(assignment.identity_known.begin() +
+                                    static_cast<std::ptrdiff_t>(b));
+  }
+  return assignment;
+}
+
+}  // namespace
+
+std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
+                                              const std::vector<LevelStep>& steps) {
+  std::vector<LevelHeight> heights(level_count);
+  if (level_count == 0) return heights;
+  heights[0].measured = true;
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (const LevelStep& step : steps) {
+      if (heights[step.from].measured == heights[step.to].measured) continue;
+      heights[step.from].measured = heights[step.to].measured = grew = true;
+    }
+  }
+  // Unknowns are the measured levels but the first, which is 0.
+  std::vector<Eigen::Index> unknown(level_count, -1);
+  Eigen::Index count = 0;
+  for (std::size_t level = 1; level < level_count; ++level) {
+    if (heights[level].measured) unknown[level] = count++;
+  }
+  if (count == 0) return heights;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd weighted = Eigen::VectorXd::Zero(count);
+  for (const LevelStep& step : steps) {
+    if (!heights[step.from].measured) continue;
+    const double weight = 1.0 / (step.sigma * step.sigma);
+    const Eigen::Index from = unknown[step.from];
+    const Eigen::Index to = unknown[step.to];
+    if (from >= 0) information(from, from) += weight;
+    if (to >= 0) information(to, to) += weight;
+    if (from >= 0 && to >= 0) information(from, to) -= weight;
+    if (from >= 0 && to >= 0) information(to, from) -= weight;
+    if (from >= 0) weighted(from) -= weight * step.climb;
+    if (to >= 0) weighted(to) += weight * step.climb;
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const Eigen::VectorXd elevations = solver.solve(weighted);
+  const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
+  for (std::size_t level = 1; level < level_count; ++level) {
+    const Eigen::Index i = unknown[level];
+    if (i < 0) continue;
+    heights[level].elevation = elevations(i);
+    heights[level].sigma = std::sqrt(std::max(0.0, covariance(i, i)));
+  }
+  return heights;
+}
+
+FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
+                                 const StoreyOptions& options) {
+  // A log that begins or ends between floors: what was before, or comes after, is not in it.
+  std::vector<FloorTransit> transits = all;
+  const bool starts_in_transit = !transits.empty() && transits.front().start == -kInfinity;
+  const double first_arrival = starts_in_transit ? transits.front().end : -kInfinity;
+  if (starts_in_transit) transits.erase(transits.begin());
+  const bool ends_in_transit = !transits.empty() && transits.back().end == kInfinity;
+  const double last_departure = ends_in_transit ? transits.back().start : kInfinity;
+  if (ends_in_transit) transits.pop_back();
+
+  Assignment assignment = AssignInOrder(transits, options);
+  std::vector<LevelHeight> heights;
+  for (std::size_t levels = 0; levels != assignment.identity_known.size();) {
+    levels = assignment.identity_known.size();
+    heights = EstimateLevelHeights(levels, StepsOf(transits, assignment));
+    assignment = MergedWhereNear(std::move(assignment), heights, options);
+  }
+
+  FloorTimeline timeline;
+  timeline.levels.clear();
+  double highest = 0.0;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    FloorLevel level;
+    level.elevation = heights[i].elevation;
+    level.elevation_sigma = heights[i].sigma;
+    level.elevation_measured = heights[i].measured;
+    level.identity_known = assignment.identity_known[i];
+    if (!heights[i].measured) {
+      level.elevation = highest + options.typical_height;
+      level.elevation_sigma = options.typical_height;
+    }
+    highest = std::max(highest, level.elevation);
+    timeline.levels.push_back(level);
+  }
+  timeline.intervals.clear();
+  if (starts_in_transit) timeline.intervals.push_back({-kInfinity, 0, true});
+  timeline.intervals.push_back({first_arrival, 0, false});
+  for (std::size_t k = 0; k < transits.size(); ++k) {
+    timeline.intervals.push_back({transits[k].start, assignment.level_of_spell[k], true});
+    timeline.intervals.push_back({transits[k].end, assignment.level_of_spell[k + 1], false});
+  }
+  if (ends_in_transit) {
+    timeline.intervals.push_back({last_departure, assignment.level_of_spell.back(), true});
+  }
+  return timeline;
+}
+
+}  // namespace masked_mapper
