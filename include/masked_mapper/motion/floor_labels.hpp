@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Floors as a person or an elevator's interface named them. Labels say which floor it is, and they
+// win over every sensor. Between floors they are often silent or late; the sensors say when the
+// robot really was in transit, and how high it climbed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/wheel_track.hpp"
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+struct FloorLabelOptions {
+  double late_s = 60.0;       ///< s by which a label may be late or early, where none says `-`
+  double cab_radius = 0.5;    ///< m within which a robot stays while it turns round in a cab
+  double least_stay_s = 4.0;  ///< s that wheels rest in an elevator at least
+};
+
+/// A label that cannot be a file's name is the user's fault: throws InputError.
+void CheckFloorLabel(const FloorLabel& label);
+
+struct LabelledTimeline {
+  FloorTimeline timeline;
+  std::vector<std::string> warnings;
+};
+
+/// `labels` in order of stamps, at least one that is not `-`. `transits` are those that a sensor
+/// found (`sensor` is its name, for what is said when it contradicts), none if there is no sensor.
+LabelledTimeline TimelineOfLabels(const std::vector<FloorLabel>& labels,
+                                  const std::vector<FloorTransit>& transits,
+                                  const std::string& sensor, const WheelTrack& track,
+                                  const FloorLabelOptions& options, const StoreyOptions& storeys);
+
+}  // namespace masked_mapper

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which floor the robot was on, and when it was between floors (the paper says "when a floor change
+// is detected" and leaves the rest open). The whole log is looked at before anything is decided.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/motion/floor_labels.hpp"
+#include "masked_mapper/motion/floor_pressure.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/wheel_track.hpp"
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+enum class FloorSource {
+  kAuto,      ///< the best that the log holds, in the order below
+  kLabels,    ///< FLOOR lines, or a file of labels
+  kPressure,  ///< a barometer
+  kNone,      ///< one floor
+};
+
+struct FloorOptions {
+  FloorSource source = FloorSource::kAuto;
+  StoreyOptions storeys;
+  FloorLabelOptions labels;
+  FloorPressureOptions pressure;
+};
+
+class FloorTracker {
+ public:
+  explicit FloorTracker(const FloorOptions& options) : options_(options) {}
+
+  /// These labels stand for those of the log. Throws InputError for a label that may not be one.
+  void UseLabels(const std::vector<FloorLabel>& labels);
+  /// Observations in order of stamps. Throws InputError for a label that may not be one.
+  void Observe(const Observation& observation);
+
+  /// All levels and intervals, once the whole log was observed. Clears warnings of before.
+  FloorTimeline Finish();
+  /// What Finish() went by; not kAuto.
+  FloorSource source() const { return source_; }
+  /// What was wrong, one line each, each said once.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  bool Uses(FloorSource source) const {
+    return options_.source == FloorSource::kAuto || options_.source == source;
+  }
+
+  FloorOptions options_;
+  bool labels_are_given_ = false;
+  std::vector<FloorLabel> labels_;
+  std::vector<PressureReading> pressure_;
+  WheelTrack track_;
+  FloorSource source_ = FloorSource::kNone;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace masked_mapper
