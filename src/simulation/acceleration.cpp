@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/simulation/acceleration.hpp"
+
+#include <cmath>
+
+namespace masked_mapper {
+
+AccelerationNoise AccelerationNoise::None() {
+  AccelerationNoise noise;
+  noise.sigma = noise.vibration = noise.bias = 0.0;
+  return noise;
+}
+
+AccelerationSimulation::AccelerationSimulation(const AccelerationNoise& noise, std::uint64_t seed)
+    : noise_(noise), random_(seed, "acceleration") {
+  for (int axis = 0; axis < 3; ++axis) bias_[axis] = noise.bias * random_.Normal();
+}
+
+Eigen::Vector3d AccelerationSimulation::Measure(const RobotState& state) {
+  constexpr double kGravity = 9.80665;  // m/s^2
+  Eigen::Vector3d measured(state.speed_change, state.speed * state.turn_rate,
+                           kGravity + state.vertical_acceleration);
+  measured += bias_;
+  const double sigma = noise_.sigma + noise_.vibration * std::abs(state.speed);
+  for (int axis = 0; axis < 3; ++axis) measured[axis] += sigma * random_.Normal();
+  return measured;
+}
+
+}  // namespace masked_mapper
