@@ -116,7 +116,8 @@ void CheckTour(const Building& building) {
   const UsualTour& tour = building.usual_tour;
   CheckLanding(building, "the tour", {tour.start_floor, tour.start_way_point});
   for (const std::size_t floor : tour.visits) {
-    if (floor >= building.floors.size()) Fail(building, "the tour visits a floor that is not there");
+    if (floor >= building.floors.size())
+      Fail(building, "the tour visits a floor that is not there");
   }
   if (!tour.visits.empty() &&
       (tour.visits.front() != tour.start_floor || tour.visits.back() != tour.start_floor)) {
@@ -131,8 +132,7 @@ void CheckTour(const Building& building) {
 void CheckReach(const Building& building) {
   std::vector<std::vector<bool>> reached;
   for (const Floor& floor : building.floors) reached.emplace_back(floor.way_points.size(), false);
-  std::vector<Landing> open{
-      {building.usual_tour.start_floor, building.usual_tour.start_way_point}};
+  std::vector<Landing> open{{building.usual_tour.start_floor, building.usual_tour.start_way_point}};
   const auto reach = [&](const Landing& landing) {
     if (reached[landing.floor][landing.way_point]) return;
     reached[landing.floor][landing.way_point] = true;
@@ -164,7 +164,8 @@ void CheckReach(const Building& building) {
     for (const Passage& passage : floor.passages) {
       if (passage.must_visit && !reached[f][passage.from]) {
         Fail(building, "floor " + floor.label + ": way-point " +
-                           floor.way_points[passage.from].name + " cannot be reached from the start");
+                           floor.way_points[passage.from].name +
+                           " cannot be reached from the start");
       }
     }
   }

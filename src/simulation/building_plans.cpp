@@ -283,9 +283,7 @@ Building CampusBuilding() {
   return building;
 }
 
-std::vector<std::string> BuildingNames() {
-  return {"campus", "corridors", "office", "tower"};
-}
+std::vector<std::string> BuildingNames() { return {"campus", "corridors", "office", "tower"}; }
 
 std::optional<Building> NamedBuilding(const std::string& name, std::uint64_t seed) {
   if (name == "campus") return CampusBuilding();

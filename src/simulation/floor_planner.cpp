@@ -10,10 +10,10 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kRoomGap = 0.12;       // m, the wall between two rooms
-constexpr double kDeadEndRoom = 1.0;    // m, between the last way-point of a dead end and its wall
-constexpr double kDoorGap = 0.62;       // m, between furniture and a way
-constexpr double kSamePlace = 0.05;     // m
+constexpr double kRoomGap = 0.12;     // m, the wall between two rooms
+constexpr double kDeadEndRoom = 1.0;  // m, between the last way-point of a dead end and its wall
+constexpr double kDoorGap = 0.62;     // m, between furniture and a way
+constexpr double kSamePlace = 0.05;   // m
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -95,11 +95,11 @@ void FloorPlanner::AddElevatorStop(std::size_t elevator, const Elevator& cab) {
   const double x = 0.5 * cab.depth;
   const double y = 0.5 * cab.width + kShaftWall;
   reserved_.push_back(ConvexSpace::Rectangle(T, -x - kShaftWall, -y, x, y));
-  elevator_stops_.push_back({elevator, T * Eigen::Vector2d(x, 0.0),
-                             {std::cos(T.theta), std::sin(T.theta)}});
+  elevator_stops_.push_back(
+      {elevator, T * Eigen::Vector2d(x, 0.0), {std::cos(T.theta), std::sin(T.theta)}});
   // The way from the corridor to the cab's front; how far the corridor is, is found when planning.
-  ConvexSpace doorway = ConvexSpace::Rectangle(T, x, -0.5 * cab.door_width, x + 0.8,
-                                               0.5 * cab.door_width);
+  ConvexSpace doorway =
+      ConvexSpace::Rectangle(T, x, -0.5 * cab.door_width, x + 0.8, 0.5 * cab.door_width);
   doorway.surfaces[3] = std::nullopt;
   spaces_.push_back(doorway);
   reserved_.push_back(doorway);
@@ -117,15 +117,14 @@ void FloorPlanner::AddStairwell(std::size_t stairs, const StairwellPlan& plan, b
                                              axis - 0.5 * plan.flight_width, length + 0.1,
                                              axis + 0.5 * plan.flight_width));
     if (open) {
-      stairs_mouths_.push_back({stairs, T * Eigen::Vector2d(0.0, axis),
-                                {-std::cos(T.theta), -std::sin(T.theta)}});
+      stairs_mouths_.push_back(
+          {stairs, T * Eigen::Vector2d(0.0, axis), {-std::cos(T.theta), -std::sin(T.theta)}});
     }
   }
   const double half = kHalfWall + plan.flight_width;
-  spaces_.push_back(
-      ConvexSpace::Rectangle(T, length, -half, length + plan.landing_depth, half));
-  reserved_.push_back(ConvexSpace::Rectangle(T, 0.0, -half - 0.1, length + plan.landing_depth + 0.1,
-                                             half + 0.1));
+  spaces_.push_back(ConvexSpace::Rectangle(T, length, -half, length + plan.landing_depth, half));
+  reserved_.push_back(
+      ConvexSpace::Rectangle(T, 0.0, -half - 0.1, length + plan.landing_depth + 0.1, half + 0.1));
 }
 
 std::size_t FloorPlanner::AddWayPoint(const Eigen::Vector2d& position, const std::string& prefix) {
@@ -192,13 +191,12 @@ void FloorPlanner::JoinCorridors() {
       const Eigen::Vector2d centre = a.from + at_a * along_a;
       ConvexSpace knuckle;
       if (std::abs(sine) > 0.999) {
-        knuckle = ConvexSpace::Rectangle(
-            {centre.x(), centre.y(), a.T_building_corridor.theta}, -0.5 * b.style.width,
-            -0.5 * a.style.width, 0.5 * b.style.width, 0.5 * a.style.width);
+        knuckle = ConvexSpace::Rectangle({centre.x(), centre.y(), a.T_building_corridor.theta},
+                                         -0.5 * b.style.width, -0.5 * a.style.width,
+                                         0.5 * b.style.width, 0.5 * a.style.width);
       } else {
         constexpr int kSides = 16;
-        const double radius =
-            0.5 * std::max(a.style.width, b.style.width) / std::cos(kPi / kSides);
+        const double radius = 0.5 * std::max(a.style.width, b.style.width) / std::cos(kPi / kSides);
         for (int side = 0; side < kSides; ++side) {
           const double angle = a.T_building_corridor.theta + (2 * side + 1) * kPi / kSides;
           knuckle.corners.push_back(centre +
@@ -211,7 +209,8 @@ void FloorPlanner::JoinCorridors() {
     }
   }
   for (Corridor& corridor : corridors_) {
-    if (!corridor.joined_from) AddStation(corridor, std::min(kDeadEndRoom, 0.4 * corridor.length), "e");
+    if (!corridor.joined_from)
+      AddStation(corridor, std::min(kDeadEndRoom, 0.4 * corridor.length), "e");
     if (!corridor.joined_to) {
       AddStation(corridor, std::max(corridor.length - kDeadEndRoom, 0.6 * corridor.length), "e");
     }
@@ -220,8 +219,8 @@ void FloorPlanner::JoinCorridors() {
 
 void FloorPlanner::DrawCorridor(const Corridor& corridor) {
   const double half = 0.5 * corridor.style.width;
-  ConvexSpace space = ConvexSpace::Rectangle(corridor.T_building_corridor, 0.0, -half,
-                                             corridor.length, half);
+  ConvexSpace space =
+      ConvexSpace::Rectangle(corridor.T_building_corridor, 0.0, -half, corridor.length, half);
   reserved_.push_back(space);
   if (corridor.style.left.glazed) Glaze(space, 2);
   if (corridor.style.right.glazed) Glaze(space, 0);
@@ -259,9 +258,8 @@ bool FloorPlanner::FreeForRoom(const ConvexSpace& space, double gap) const {
       if ((corner - low_).minCoeff() < 0.0 || (high_ - corner).minCoeff() < 0.0) return false;
     }
   }
-  return std::none_of(reserved_.begin(), reserved_.end(), [&](const ConvexSpace& other) {
-    return Overlap(space, other, gap);
-  });
+  return std::none_of(reserved_.begin(), reserved_.end(),
+                      [&](const ConvexSpace& other) { return Overlap(space, other, gap); });
 }
 
 bool FloorPlanner::TryRoom(std::size_t corridor_index, double side, double x, double usual_depth,
@@ -286,9 +284,9 @@ bool FloorPlanner::TryRoom(std::size_t corridor_index, double side, double x, do
     const double y1 = side > 0.0 ? half + depth : -half + 0.2;
     const ConvexSpace niche =
         ConvexSpace::Rectangle(corridor.T_building_corridor, x, y0, x + width, y1);
-    const ConvexSpace outer = ConvexSpace::Rectangle(
-        corridor.T_building_corridor, x, side > 0.0 ? half + 0.01 : y0, x + width,
-        side > 0.0 ? y1 : -half - 0.01);
+    const ConvexSpace outer =
+        ConvexSpace::Rectangle(corridor.T_building_corridor, x, side > 0.0 ? half + 0.01 : y0,
+                               x + width, side > 0.0 ? y1 : -half - 0.01);
     if (x + width > corridor.length || !FreeForRoom(outer, 0.0)) return false;
     spaces_.push_back(niche);
     reserved_.push_back(outer);
@@ -328,7 +326,7 @@ bool FloorPlanner::TryRoom(std::size_t corridor_index, double side, double x, do
       const double first = room.x0 + 0.5 * room.door_width + 0.15;
       const double last = room.x1 - 0.5 * room.door_width - 0.15;
       const double where = random_.Uniform();
-      room.door_x = where < 0.35   ? first + 0.1 * random_.Uniform()
+      room.door_x = where < 0.35  ? first + 0.1 * random_.Uniform()
                     : where < 0.7 ? last - 0.1 * random_.Uniform()
                                   : random_.Uniform(first, last);
       room.open = random_.Chance(style.open_share);
@@ -348,8 +346,8 @@ void FloorPlanner::DrawRoomFront(const Room& room, const SideStyle& style, bool 
   const auto opening = [&](double x0, double x1) {
     const double v0 = half - 0.05;
     const double v1 = room.v0 + 0.05;
-    spaces_.push_back(ConvexSpace::Rectangle(T, x0, room.side > 0.0 ? v0 : -v1, x1,
-                                             room.side > 0.0 ? v1 : -v0));
+    spaces_.push_back(
+        ConvexSpace::Rectangle(T, x0, room.side > 0.0 ? v0 : -v1, x1, room.side > 0.0 ? v1 : -v0));
   };
   const auto line = [&](double x0, double v0, double x1, double v1, Surface surface) {
     floor_.segments.push_back({T * Eigen::Vector2d(x0, room.side * v0),
@@ -466,12 +464,20 @@ void FloorPlanner::FurnishRoom(const Room& room) {
   for (int piece = 0; piece < pieces; ++piece) {
     const double length = random_.Uniform(0.7, 1.7);
     const double thick = random_.Uniform(0.35, 0.8);
-    const double along_x = random_.Uniform(room.x0 + 0.02, std::max(room.x0 + 0.03, room.x1 - length));
-    const double along_v = random_.Uniform(room.v0 + 0.02, std::max(room.v0 + 0.03, room.v1 - length));
+    const double along_x =
+        random_.Uniform(room.x0 + 0.02, std::max(room.x0 + 0.03, room.x1 - length));
+    const double along_v =
+        random_.Uniform(room.v0 + 0.02, std::max(room.v0 + 0.03, room.v1 - length));
     switch (random_.Below(4)) {
-      case 0: place(along_x, room.v1 - thick - 0.02, along_x + length, room.v1 - 0.02); break;
-      case 1: place(room.x0 + 0.02, along_v, room.x0 + thick + 0.02, along_v + length); break;
-      case 2: place(room.x1 - thick - 0.02, along_v, room.x1 - 0.02, along_v + length); break;
+      case 0:
+        place(along_x, room.v1 - thick - 0.02, along_x + length, room.v1 - 0.02);
+        break;
+      case 1:
+        place(room.x0 + 0.02, along_v, room.x0 + thick + 0.02, along_v + length);
+        break;
+      case 2:
+        place(room.x1 - thick - 0.02, along_v, room.x1 - 0.02, along_v + length);
+        break;
       default: {
         const double cx = 0.5 * (room.x0 + room.x1) + random_.Uniform(-0.3, 0.3);
         const double cv = 0.5 * (room.v0 + room.v1) + random_.Uniform(-0.2, 0.5);
@@ -499,8 +505,7 @@ void FloorPlanner::FurnishCorridor(std::size_t corridor_index) {
   };
   if (corridor.style.fire_doors > 0.0) {
     double x = corridor.style.fire_doors * random_.Uniform(0.4, 0.8);
-    for (; x < corridor.length - 2.0;
-         x += corridor.style.fire_doors * random_.Uniform(0.7, 1.3)) {
+    for (; x < corridor.length - 2.0; x += corridor.style.fire_doors * random_.Uniform(0.7, 1.3)) {
       const double post = half - 0.72;
       if (post < 0.12 || !free_of_stations(x, 1.5)) continue;
       if (!free_of_doors(0, x - 0.1, x + 0.1) || !free_of_doors(1, x - 0.1, x + 0.1)) continue;

@@ -7,8 +7,8 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kInside = 1e-6;      // m, nearer to an edge than this is on it
-constexpr double kShortest = 1e-4;    // m, shorter remains are no walls
+constexpr double kInside = 1e-6;    // m, nearer to an edge than this is on it
+constexpr double kShortest = 1e-4;  // m, shorter remains are no walls
 
 struct Box {
   Eigen::Vector2d low;
@@ -56,12 +56,10 @@ std::pair<double, double> PartInside(const Eigen::Vector2d& a, const Eigen::Vect
 bool EdgeSeparates(const ConvexSpace& a, const ConvexSpace& b, double gap) {
   for (std::size_t i = 0; i < a.corners.size(); ++i) {
     const Eigen::Vector2d& corner = a.corners[i];
-    const Eigen::Vector2d normal =
-        InwardNormal(corner, a.corners[(i + 1) % a.corners.size()]);
-    const bool all_outside =
-        std::all_of(b.corners.begin(), b.corners.end(), [&](const Eigen::Vector2d& point) {
-          return normal.dot(point - corner) <= -gap;
-        });
+    const Eigen::Vector2d normal = InwardNormal(corner, a.corners[(i + 1) % a.corners.size()]);
+    const bool all_outside = std::all_of(
+        b.corners.begin(), b.corners.end(),
+        [&](const Eigen::Vector2d& point) { return normal.dot(point - corner) <= -gap; });
     if (all_outside) return true;
   }
   return false;
@@ -72,10 +70,9 @@ bool EdgeSeparates(const ConvexSpace& a, const ConvexSpace& b, double gap) {
 ConvexSpace ConvexSpace::Rectangle(const Pose2& T_building_local, double x0, double y0, double x1,
                                    double y1) {
   ConvexSpace space;
-  space.corners = {T_building_local * Eigen::Vector2d(x0, y0),
-                   T_building_local * Eigen::Vector2d(x1, y0),
-                   T_building_local * Eigen::Vector2d(x1, y1),
-                   T_building_local * Eigen::Vector2d(x0, y1)};
+  space.corners = {
+      T_building_local * Eigen::Vector2d(x0, y0), T_building_local * Eigen::Vector2d(x1, y0),
+      T_building_local * Eigen::Vector2d(x1, y1), T_building_local * Eigen::Vector2d(x0, y1)};
   space.surfaces.assign(4, Surface::kWall);
   return space;
 }

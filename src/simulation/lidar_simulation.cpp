@@ -86,8 +86,7 @@ LaserScan LidarSimulation::Scan(double time, const RobotState& state) {
   const Eigen::Vector2d origin = T_building_laser.Translation();
   const SegmentIndex& standing = standing_[state.floor];
   const std::vector<Segment> doors = Doors(state);
-  std::vector<Leg> legs =
-      people_.LegsAt(time, state.floor, state.T_building_robot.Translation());
+  std::vector<Leg> legs = people_.LegsAt(time, state.floor, state.T_building_robot.Translation());
   legs.erase(std::remove_if(legs.begin(), legs.end(),
                             [&](const Leg& leg) {
                               return (leg.centre - origin).norm() > options_.max_range + leg.radius;
@@ -97,8 +96,7 @@ LaserScan LidarSimulation::Scan(double time, const RobotState& state) {
   scan.ranges.reserve(options_.beams);
   for (std::size_t beam = 0; beam < options_.beams; ++beam) {
     const double angle = T_building_laser.theta + scan.Angle(beam);
-    scan.ranges.push_back(
-        Range(origin, {std::cos(angle), std::sin(angle)}, standing, doors, legs));
+    scan.ranges.push_back(Range(origin, {std::cos(angle), std::sin(angle)}, standing, doors, legs));
   }
   return scan;
 }

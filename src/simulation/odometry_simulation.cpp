@@ -25,17 +25,17 @@ Pose2 OdometrySimulation::Advance(const Pose2& T_before_now, double seconds) {
   const double turn = std::abs(T_before_now.theta);
   const double driving = distance > 0.0 ? 1.0 : 0.0;
   Pose2 T_measured = T_before_now;
-  const double forward = scale_ + (distance > 0.0 ? noise_.distance_sigma * random_.Normal() /
-                                                        std::sqrt(distance)
-                                                  : 0.0);
-  T_measured.x = T_before_now.x * forward - driving * noise_.slip_forward * turn *
-                                                (T_before_now.x < 0.0 ? -1.0 : 1.0);
+  const double forward =
+      scale_ +
+      (distance > 0.0 ? noise_.distance_sigma * random_.Normal() / std::sqrt(distance) : 0.0);
+  T_measured.x = T_before_now.x * forward -
+                 driving * noise_.slip_forward * turn * (T_before_now.x < 0.0 ? -1.0 : 1.0);
   T_measured.y = T_before_now.y * forward - driving * noise_.slip_sideways * T_before_now.theta;
   // A first-order process: after each step the deviation is what it was.
   const double keep =
       noise_.gyro_wander_seconds > 0.0 ? 1.0 / (1.0 + seconds / noise_.gyro_wander_seconds) : 0.0;
-  wander_ = keep * wander_ + std::sqrt(1.0 - keep * keep) *
-                                 DegToRad(noise_.gyro_wander_deg_s) * random_.Normal();
+  wander_ = keep * wander_ +
+            std::sqrt(1.0 - keep * keep) * DegToRad(noise_.gyro_wander_deg_s) * random_.Normal();
   T_measured.theta += (bias_ + wander_) * seconds +
                       DegToRad(noise_.turn_sigma_deg) * std::sqrt(turn) * random_.Normal();
   T_odom_robot_ = T_odom_robot_ * T_measured;

@@ -6,9 +6,9 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kStep = 0.7;        // m per step
-constexpr double kHalfHips = 0.11;   // m
-constexpr double kHalfStride = 0.28; // m
+constexpr double kStep = 0.7;         // m per step
+constexpr double kHalfHips = 0.11;    // m
+constexpr double kHalfStride = 0.28;  // m
 
 }  // namespace
 
@@ -27,19 +27,21 @@ void People::Populate(std::size_t floor) {
   for (const Passage& passage : plan.passages) {
     neighbours_[passage.from].push_back(passage.to);
     neighbours_[passage.to].push_back(passage.from);
-    length += (plan.way_points[passage.to].position - plan.way_points[passage.from].position).norm();
+    length +=
+        (plan.way_points[passage.to].position - plan.way_points[passage.from].position).norm();
   }
   if (plan.passages.empty()) return;
-  const auto count = static_cast<std::size_t>(std::lround(options_.per_kilometre * length / 1000.0));
+  const auto count =
+      static_cast<std::size_t>(std::lround(options_.per_kilometre * length / 1000.0));
   for (std::size_t i = 0; i < count; ++i) {
     const Passage& passage = plan.passages[random_.Below(plan.passages.size())];
     Person person;
     person.from = passage.from;
     person.to = passage.to;
     person.speed = options_.speed * random_.Uniform(0.75, 1.25);
-    person.along = random_.Uniform() * (plan.way_points[passage.to].position -
-                                        plan.way_points[passage.from].position)
-                                           .norm();
+    person.along =
+        random_.Uniform() *
+        (plan.way_points[passage.to].position - plan.way_points[passage.from].position).norm();
     person.stride = random_.Uniform(0.0, 2.0 * kPi);
     persons_.push_back(person);
   }

@@ -33,8 +33,8 @@ double PressureSimulation::Measure(double time, double height) {
   last_time_ = time;
   const double keep =
       noise_.ventilation_seconds > 0.0 ? 1.0 / (1.0 + seconds / noise_.ventilation_seconds) : 0.0;
-  ventilation_ = keep * ventilation_ +
-                 std::sqrt(1.0 - keep * keep) * noise_.ventilation * random_.Normal();
+  ventilation_ =
+      keep * ventilation_ + std::sqrt(1.0 - keep * keep) * noise_.ventilation * random_.Normal();
   double apparent = height + ventilation_;
   for (const Wave& wave : waves_) {
     apparent += noise_.weather * std::sin(wave.frequency * time + wave.phase);

@@ -12,10 +12,10 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kMargin = 0.05;             // m, kept beyond the robot's radius
-constexpr double kSharpest = 100.0;          // deg; sharper corners are turned on the spot
-constexpr double kRideAcceleration = 0.8;    // m/s^2, on average over a ramp
-constexpr double kRideSpeed = 1.5;           // m/s
+constexpr double kMargin = 0.05;           // m, kept beyond the robot's radius
+constexpr double kSharpest = 100.0;        // deg; sharper corners are turned on the spot
+constexpr double kRideAcceleration = 0.8;  // m/s^2, on average over a ramp
+constexpr double kRideSpeed = 1.5;         // m/s
 constexpr double kDoorSeconds = 2.6;
 
 /// A line (curvature 0) or an arc of the path in the plane.
@@ -58,10 +58,10 @@ class DriveBuilder {
       standing_.emplace_back(StandingSegments(building, f));
       free_.emplace_back();
       for (const Passage& passage : building.floors[f].passages) {
-        free_.back().push_back(standing_[f].Clearance(building.floors[f].way_points[passage.from].position,
-                                                      building.floors[f].way_points[passage.to].position,
-                                                      2.0) -
-                               options.robot_radius - 2.0 * kMargin);
+        free_.back().push_back(
+            standing_[f].Clearance(building.floors[f].way_points[passage.from].position,
+                                   building.floors[f].way_points[passage.to].position, 2.0) -
+            options.robot_radius - 2.0 * kMargin);
       }
     }
     next_rest_ = RestDistance();
@@ -118,8 +118,7 @@ class DriveBuilder {
     if (std::abs(angle) < 1e-9) return;
     const double sign = angle > 0.0 ? 1.0 : -1.0;
     const double size = std::abs(angle);
-    const double peak =
-        std::min(options_.turn_rate, std::sqrt(size * options_.turn_acceleration));
+    const double peak = std::min(options_.turn_rate, std::sqrt(size * options_.turn_acceleration));
     const double ramp = peak / options_.turn_acceleration;
     const double cruise = size / peak - ramp;
     const auto phase = [&](double seconds, double rate, double acceleration) {
@@ -127,8 +126,8 @@ class DriveBuilder {
       motion.turn_rate = sign * rate;
       motion.turn_acceleration = sign * acceleration;
       Push(seconds, motion);
-      pose_.theta = WrapAngle(pose_.theta + sign * (rate * seconds +
-                                                    0.5 * acceleration * seconds * seconds));
+      pose_.theta =
+          WrapAngle(pose_.theta + sign * (rate * seconds + 0.5 * acceleration * seconds * seconds));
     };
     const double goal = WrapAngle(pose_.theta + angle);
     phase(ramp, 0.0, options_.turn_acceleration);
@@ -217,7 +216,8 @@ class DriveBuilder {
     if (std::abs(turn) > DegToRad(kSharpest)) return std::nullopt;
     if (std::abs(turn) < 1e-6) return std::nullopt;
     const double half_tangent = std::tan(0.5 * std::abs(turn));
-    double reach = std::min({0.45 * (b - a).norm(), 0.45 * (c - b).norm(), 6.0 * half_tangent, 1.1});
+    double reach =
+        std::min({0.45 * (b - a).norm(), 0.45 * (c - b).norm(), 6.0 * half_tangent, 1.1});
     for (; reach > 0.15 * half_tangent; reach *= 0.7) {
       const Eigen::Vector2d start = b - reach * (b - a).normalized();
       Piece piece;
@@ -270,8 +270,8 @@ class DriveBuilder {
       } else {
         line(at, points[i]);
         at = points[i];
-        const double turn = WrapAngle(Heading(points[i + 1] - points[i]) -
-                                      Heading(points[i] - points[i - 1]));
+        const double turn =
+            WrapAngle(Heading(points[i + 1] - points[i]) - Heading(points[i] - points[i - 1]));
         if (std::abs(turn) >= 1e-6) runs.emplace_back();
       }
     }
@@ -300,12 +300,13 @@ class DriveBuilder {
     }
     std::vector<double> border(run.size() + 1, 0.0);  // speed at the ends of pieces
     for (std::size_t i = 1; i < run.size(); ++i) {
-      border[i] = std::min({limit[i - 1], limit[i],
-                            std::sqrt(border[i - 1] * border[i - 1] + 2.0 * a * run[i - 1].length)});
+      border[i] =
+          std::min({limit[i - 1], limit[i],
+                    std::sqrt(border[i - 1] * border[i - 1] + 2.0 * a * run[i - 1].length)});
     }
     for (std::size_t i = run.size(); i-- > 1;) {
-      border[i] = std::min(border[i],
-                           std::sqrt(border[i + 1] * border[i + 1] + 2.0 * a * run[i].length));
+      border[i] =
+          std::min(border[i], std::sqrt(border[i + 1] * border[i + 1] + 2.0 * a * run[i].length));
     }
     for (std::size_t i = 0; i < run.size(); ++i) {
       const Piece& piece = run[i];
@@ -423,8 +424,8 @@ class DriveBuilder {
   const DriveOptions& options_;
   RobotDrive& drive_;
   RandomGenerator random_;
-  std::vector<SegmentIndex> standing_;      // per floor
-  std::vector<std::vector<double>> free_;   // per floor and passage, m to either side
+  std::vector<SegmentIndex> standing_;     // per floor
+  std::vector<std::vector<double>> free_;  // per floor and passage, m to either side
   double time_ = 0.0;
   Pose2 pose_;  // T_building_robot
   double elevation_ = 0.0;
@@ -449,8 +450,8 @@ RobotState RobotDrive::At(double time) const {
   state.elevation = motion->elevation + motion->slope * distance;
   state.speed = motion->speed + motion->acceleration * t;
   state.speed_change = motion->acceleration;
-  state.turn_rate = motion->turn_rate + motion->turn_acceleration * t +
-                    motion->curvature * state.speed;
+  state.turn_rate =
+      motion->turn_rate + motion->turn_acceleration * t + motion->curvature * state.speed;
   if (const FloorSpan* span = LastStartedAt(floor_spans_, time)) {
     state.floor = span->floor;
     state.in_transit = span->in_transit;
@@ -477,7 +478,8 @@ RobotState RobotDrive::At(double time) const {
     const double elapsed = time - ride->start;
     const double left = ride->end - time;
     const bool speeding = elapsed < seconds - ride->ramp;
-    state.elevation = speeding ? ride->from + sign * height(elapsed) : ride->to - sign * height(left);
+    state.elevation =
+        speeding ? ride->from + sign * height(elapsed) : ride->to - sign * height(left);
     state.vertical_acceleration = sign * (pulse(elapsed) - pulse(left));
   }
   return state;

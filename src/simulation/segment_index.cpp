@@ -8,9 +8,9 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kCell = 1.0;             // m, about a door
-constexpr double kMaxCells = 4e6;         // the cell grows rather than the memory
-constexpr double kBoxSlack = 1e-6;        // m, so that rounding never loses a segment between cells
+constexpr double kCell = 1.0;       // m, about a door
+constexpr double kMaxCells = 4e6;   // the cell grows rather than the memory
+constexpr double kBoxSlack = 1e-6;  // m, so that rounding never loses a segment between cells
 
 /// Whether a segment passes through the square of half-width `half` around `centre`.
 bool Touches(const Segment& segment, const Eigen::Vector2d& centre, double half) {
@@ -176,8 +176,9 @@ double SegmentIndex::Clearance(const Eigen::Vector2d& a, const Eigen::Vector2d& 
   const Segment way{a, b, Surface::kWall};
   for (std::size_t row = first_row; row <= last_row; ++row) {
     for (std::size_t column = first_column; column <= last_column; ++column) {
-      const Eigen::Vector2d centre = low_ + cell_ * Eigen::Vector2d(static_cast<double>(column) + 0.5,
-                                                                    static_cast<double>(row) + 0.5);
+      const Eigen::Vector2d centre =
+          low_ + cell_ * Eigen::Vector2d(static_cast<double>(column) + 0.5,
+                                         static_cast<double>(row) + 0.5);
       if (!Touches(way, centre, 0.5 * cell_ + limit)) continue;
       const std::size_t cell = row * columns_ + column;
       for (std::uint32_t k = cell_begin_[cell]; k < cell_begin_[cell + 1]; ++k) {

@@ -33,8 +33,8 @@ class Ticks {
   std::uint64_t count_ = 0;
 };
 
-/// Poses are kept to a micrometre and a nanoradian: the last bits of sines and cosines differ between
-/// platforms, and must not reach the output.
+/// Poses are kept to a micrometre and a nanoradian: the last bits of sines and cosines differ
+/// between platforms, and must not reach the output.
 Pose2 Snapped(const Pose2& pose) {
   return {std::round(pose.x * 1e6) * 1e-6, std::round(pose.y * 1e6) * 1e-6,
           std::round(pose.theta * 1e9) * 1e-9};

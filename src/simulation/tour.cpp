@@ -40,7 +40,8 @@ Links LinksOf(const Floor& floor) {
 /// Shortest ways from one way-point on its floor. `weights` scale passages; empty: all 1.
 struct ShortestWays {
   std::vector<double> distance;
-  std::vector<Link> back;  ///< the link by which a way-point was reached, `to` is where it came from
+  std::vector<Link>
+      back;  ///< the link by which a way-point was reached, `to` is where it came from
 
   ShortestWays(const Links& links, std::size_t source, const std::vector<double>& weights)
       : distance(links.size(), kInfinity), back(links.size()) {
@@ -170,7 +171,8 @@ class TourBuilder {
   }
 
   void WalkTo(std::size_t way_point, const std::vector<double>& weights = {}) {
-    Walk(ShortestWays(links_[here_.floor], here_.way_point, weights).To(here_.way_point, way_point));
+    Walk(
+        ShortestWays(links_[here_.floor], here_.way_point, weights).To(here_.way_point, way_point));
   }
 
   void Take(const Connection& connection) {
@@ -227,8 +229,8 @@ class TourBuilder {
     return best[random_.Below(best.size())];
   }
 
-  /// Drives to the nearest of the way-points for which `is_target` holds, over as many floors as that
-  /// takes. Returns whether there is one.
+  /// Drives to the nearest of the way-points for which `is_target` holds, over as many floors as
+  /// that takes. Returns whether there is one.
   template <typename IsTarget>
   bool GoToNearest(const IsTarget& is_target) {
     std::vector<std::size_t> first;  // index of a floor's first way-point among all
@@ -237,7 +239,9 @@ class TourBuilder {
       first.push_back(all.size());
       for (std::size_t w = 0; w < building_.floors[f].way_points.size(); ++w) all.push_back({f, w});
     }
-    const auto id = [&](const Landing& landing) { return first[landing.floor] + landing.way_point; };
+    const auto id = [&](const Landing& landing) {
+      return first[landing.floor] + landing.way_point;
+    };
     std::vector<double> distance(all.size(), kInfinity);
     std::vector<std::size_t> back(all.size(), kNone);
     std::vector<std::optional<Connection>> by(all.size());
@@ -301,8 +305,8 @@ class TourBuilder {
     GoToNearest([&](const Landing& landing) { return landing.floor == floor; });
   }
 
-  /// Drives what is not yet driven of this floor, or, when there is nothing left, all of it (`again`)
-  /// or an excursion, and ends where the way to `next_floor` begins.
+  /// Drives what is not yet driven of this floor, or, when there is nothing left, all of it
+  /// (`again`) or an excursion, and ends where the way to `next_floor` begins.
   void VisitFloor(std::size_t next_floor, bool again, double budget) {
     next_.reset();
     if (next_floor != kNone && next_floor != here_.floor) next_ = ChooseConnection(next_floor);
@@ -336,8 +340,9 @@ class TourBuilder {
   }
 
   /// A walk over all wanted passages from here to `end` with little driven twice: the wanted
-  /// passages, joined where they are apart and doubled along short ways between odd way-points until
-  /// an Euler walk exists (the Chinese postman's way, with a good pairing in place of the best).
+  /// passages, joined where they are apart and doubled along short ways between odd way-points
+  /// until an Euler walk exists (the Chinese postman's way, with a good pairing in place of the
+  /// best).
   void Cover(const std::vector<bool>& wanted, std::size_t end, double budget) {
     const Links& links = links_[here_.floor];
     const Floor& floor = building_.floors[here_.floor];
@@ -364,7 +369,8 @@ class TourBuilder {
       if (degree[w] % 2 == 1) odd.push_back(w);
     }
     std::vector<ShortestWays> ways;
-    for (const std::size_t way_point : odd) ways.emplace_back(links, way_point, std::vector<double>{});
+    for (const std::size_t way_point : odd)
+      ways.emplace_back(links, way_point, std::vector<double>{});
     for (const auto& [i, j] : Pair(odd, ways)) {
       for (const Link& link : ways[i].To(odd[i], odd[j])) add(link.passage);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated building: floors of line segments as a 2D scanner sees them, the ways a robot may take
-// on them, and the elevators and stairs between them. All in one frame, `building`; metres, radians.
+// A simulated building: floors of line segments as a 2D scanner sees them, the ways a robot may
+// take on them, and the elevators and stairs between them. All in one frame, `building`; metres,
+// radians.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,8 +37,8 @@ struct Passage {
 
 struct Floor {
   std::string label;
-  double elevation = 0.0;          ///< m
-  std::vector<Segment> segments;   ///< without the cabs of elevators
+  double elevation = 0.0;         ///< m
+  std::vector<Segment> segments;  ///< without the cabs of elevators
   std::vector<WayPoint> way_points;
   std::vector<Passage> passages;
 };
@@ -45,21 +46,23 @@ struct Floor {
 /// Where a connection is reached on one floor.
 struct Landing {
   std::size_t floor = 0;
-  std::size_t way_point = 0;  ///< in front of the door, on the cab's axis; or at the end of the stairs
+  std::size_t way_point =
+      0;  ///< in front of the door, on the cab's axis; or at the end of the stairs
 };
 
 /// A cab with one door at its +x side. Inside it no other wall of the building may stand.
 struct Elevator {
   std::string name;
-  Pose2 T_building_cab;     ///< centre of the cab, x axis out of the door
-  double depth = 2.0;       ///< m, along x
-  double width = 2.0;       ///< m, along y
-  double door_width = 1.1;  ///< m, in the middle of the front
+  Pose2 T_building_cab;           ///< centre of the cab, x axis out of the door
+  double depth = 2.0;             ///< m, along x
+  double width = 2.0;             ///< m, along y
+  double door_width = 1.1;        ///< m, in the middle of the front
   std::vector<Landing> landings;  ///< at least two, of different floors
 };
 
 /// Stairs or a ramp: a way in the plane along which the height changes evenly.
-/// Their walls stand on both floors; the scanner sees the lower floor's on the first half of the way.
+/// Their walls stand on both floors; the scanner sees the lower floor's on the first half of the
+/// way.
 struct Stairs {
   std::string name;
   Landing lower;
@@ -71,8 +74,9 @@ struct Stairs {
 struct UsualTour {
   std::size_t start_floor = 0;
   std::size_t start_way_point = 0;
-  std::vector<std::size_t> visits;  ///< floors in order, beginning and ending with the start's; empty: all
-  double rest_per_metre = 0.2;      ///< s of standing about per metre driven
+  std::vector<std::size_t>
+      visits;  ///< floors in order, beginning and ending with the start's; empty: all
+  double rest_per_metre = 0.2;  ///< s of standing about per metre driven
 };
 
 struct Building {
@@ -89,7 +93,8 @@ std::vector<Segment> CabWalls(const Elevator& elevator);
 /// The two leaves of a cab's door, `open` from 0 (one closed line) to 1 (nothing left).
 std::vector<Segment> CabDoor(const Elevator& elevator, double open);
 
-/// All that stands on a floor whatever happens: its segments and the cabs of the elevators that stop.
+/// All that stands on a floor whatever happens: its segments and the cabs of the elevators that
+/// stop.
 std::vector<Segment> StandingSegments(const Building& building, std::size_t floor);
 
 /// The way of stairs from landing to landing, cut half-way: the part that the lower floor's walls
@@ -112,10 +117,10 @@ double CorridorLength(const Floor& floor);
 double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
                          const Eigen::Vector2d& b);
 
-/// Throws InputError, in one line that says where, when a building cannot be driven: no floor, labels
-/// or names that are taken or not allowed, indices or numbers out of range, floors not rising, ways
-/// that pass closer than `clearance` (m) to what stands there, way-points that must be visited and
-/// cannot be reached from the start.
+/// Throws InputError, in one line that says where, when a building cannot be driven: no floor,
+/// labels or names that are taken or not allowed, indices or numbers out of range, floors not
+/// rising, ways that pass closer than `clearance` (m) to what stands there, way-points that must be
+/// visited and cannot be reached from the start.
 void CheckBuilding(const Building& building, double clearance);
 
 }  // namespace masked_mapper

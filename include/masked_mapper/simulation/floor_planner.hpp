@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Furnishes a floor from its skeleton. Given are corridors as centre lines, halls, elevators and
-// stairs; rooms of uneven widths with doors, panes and furniture are packed along the corridors where
-// there is space, and the graph of ways follows from the centre lines and where they cross.
+// stairs; rooms of uneven widths with doors, panes and furniture are packed along the corridors
+// where there is space, and the graph of ways follows from the centre lines and where they cross.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,23 +19,23 @@ namespace masked_mapper {
 /// One side of a corridor, seen from its first end: left is counter-clockwise.
 struct SideStyle {
   bool rooms = true;
-  bool glazed = false;       ///< an outer wall of glass with mullions; without rooms
-  double depth_min = 3.6;    ///< m, of rooms; less where there is no space
-  double depth_max = 5.6;    ///< m
-  double width_min = 2.7;    ///< m, of rooms
-  double width_max = 6.2;    ///< m
-  double wall = 0.16;        ///< m, between corridor and rooms
-  double recess = 0.06;      ///< m, of a closed door behind the corridor's face
-  double open_share = 0.22;  ///< of the doors that stand open
-  double window_share = 0.6; ///< of the rooms with a window opposite the door
+  bool glazed = false;        ///< an outer wall of glass with mullions; without rooms
+  double depth_min = 3.6;     ///< m, of rooms; less where there is no space
+  double depth_max = 5.6;     ///< m
+  double width_min = 2.7;     ///< m, of rooms
+  double width_max = 6.2;     ///< m
+  double wall = 0.16;         ///< m, between corridor and rooms
+  double recess = 0.06;       ///< m, of a closed door behind the corridor's face
+  double open_share = 0.22;   ///< of the doors that stand open
+  double window_share = 0.6;  ///< of the rooms with a window opposite the door
 };
 
 struct CorridorStyle {
-  double width = 2.2;        ///< m
+  double width = 2.2;  ///< m
   SideStyle left;
   SideStyle right;
-  double clutter = 0.05;     ///< cupboards, benches, pillars per metre and side
-  double fire_doors = 0.0;   ///< m between pairs of posts that narrow the corridor; 0: none
+  double clutter = 0.05;    ///< cupboards, benches, pillars per metre and side
+  double fire_doors = 0.0;  ///< m between pairs of posts that narrow the corridor; 0: none
 };
 
 /// Stairs of two flights side by side that turn on a half-way landing.
@@ -106,8 +106,7 @@ class FloorPlanner {
   void JoinCorridors();
   void DrawCorridor(const Corridor& corridor);
   void FillSide(std::size_t corridor_index, double side);
-  bool TryRoom(std::size_t corridor_index, double side, double x, double usual_depth,
-               double* end);
+  bool TryRoom(std::size_t corridor_index, double side, double x, double usual_depth, double* end);
   void DrawRoomFront(const Room& room, const SideStyle& style, bool pane);
   void VisitRooms();
   void FurnishRoom(const Room& room);

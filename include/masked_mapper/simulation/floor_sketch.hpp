@@ -12,7 +12,7 @@
 namespace masked_mapper {
 
 struct ConvexSpace {
-  std::vector<Eigen::Vector2d> corners;         ///< counter-clockwise
+  std::vector<Eigen::Vector2d> corners;          ///< counter-clockwise
   std::vector<std::optional<Surface>> surfaces;  ///< edge i, from corner i to i + 1; empty: open
 
   /// A rectangle in the frame of a pose: x from x0 to x1, y from y0 to y1, all four edges of walls.

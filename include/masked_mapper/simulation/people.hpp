@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// People who walk about a floor along its ways and stand about now and then. A scanner at shin height
-// sees their legs.
+// People who walk about a floor along its ways and stand about now and then. A scanner at shin
+// height sees their legs.
 #pragma once
 
 #include <Eigen/Core>

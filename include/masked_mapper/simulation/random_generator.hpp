@@ -26,7 +26,8 @@ class RandomGenerator {
   /// In [0, 1), a multiple of 2^-53.
   double Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
-  /// In [0, count); count > 0. The bias of the plain remainder is below 2^-40 for counts below 2^24.
+  /// In [0, count); count > 0. The bias of the plain remainder is below 2^-40 for counts below
+  /// 2^24.
   std::uint64_t Below(std::uint64_t count) { return Next() % count; }
   bool Chance(double probability) { return Uniform() < probability; }
 

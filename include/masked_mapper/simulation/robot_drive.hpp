@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the robot moves along a tour: a unicycle with limited speed, turn rate and acceleration that
-// rounds its corners, turns on the spot, stops now and then, and rides elevators. The motion is known
-// in closed form, so every sensor may sample it at stamps of its own.
+// rounds its corners, turns on the spot, stops now and then, and rides elevators. The motion is
+// known in closed form, so every sensor may sample it at stamps of its own.
 #pragma once
 
 #include <cstdint>

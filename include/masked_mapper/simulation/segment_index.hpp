@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A uniform grid over segments: ray casting and clearance in time that does not grow with the building.
+// A uniform grid over segments: ray casting and clearance in time that does not grow with the
+// building.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +12,8 @@
 
 namespace masked_mapper {
 
-/// Range at which the ray from `origin` along the unit vector `direction` meets a segment, when that
-/// is beyond `min_range` (m). A ray along the segment meets nothing.
+/// Range at which the ray from `origin` along the unit vector `direction` meets a segment, when
+/// that is beyond `min_range` (m). A ray along the segment meets nothing.
 inline std::optional<double> RayRange(const Eigen::Vector2d& origin,
                                       const Eigen::Vector2d& direction, const Segment& segment,
                                       double min_range) {
@@ -41,8 +42,8 @@ class SegmentIndex {
 
   const std::vector<Segment>& segments() const { return segments_; }
 
-  /// The first segment that a ray meets between `min_range` and `max_range` (exclusive); of several at
-  /// the same range the one of the lowest index.
+  /// The first segment that a ray meets between `min_range` and `max_range` (exclusive); of several
+  /// at the same range the one of the lowest index.
   std::optional<Hit> Cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                           double min_range, double max_range) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot's drive through a simulated building: what its log would say, and what was true.
-// The perfect world (options) and what spoils it (noise) are apart; every random number comes from the
-// seed, so the same input gives the same observations everywhere.
+// The perfect world (options) and what spoils it (noise) are apart; every random number comes from
+// the seed, so the same input gives the same observations everywhere.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,10 @@ struct SimulationOptions {
   DriveOptions drive;               ///< its seed is set from `seed`
   bool usual_rest = true;           ///< stand about as long as is usual in the building
   LidarOptions lidar;
-  double odometry_rate = 10.0;      ///< Hz, of readings besides those in scans; 0: none
+  double odometry_rate = 10.0;  ///< Hz, of readings besides those in scans; 0: none
   PressureOptions pressure;
   AccelerationOptions acceleration;
-  bool floor_labels = false;        ///< say which floor, as an elevator's interface would
+  bool floor_labels = false;             ///< say which floor, as an elevator's interface would
   double first_stamp = 1'500'000'000.0;  ///< s
 };
 

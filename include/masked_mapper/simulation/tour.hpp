@@ -29,8 +29,9 @@ struct Transit {
 };
 
 struct Tour {
-  std::vector<TourLeg> legs;      ///< at least one
-  std::vector<Transit> transits;  ///< transit i leads from the end of leg i to the start of leg i + 1
+  std::vector<TourLeg> legs;  ///< at least one
+  std::vector<Transit>
+      transits;  ///< transit i leads from the end of leg i to the start of leg i + 1
 };
 
 /// The building must have passed CheckBuilding.
