@@ -97,6 +97,7 @@ TEST(RenderGrid, EqualsPerBeamSampling) {
     GridOptions options;
     options.resolution_m = trial % 2 == 0 ? 0.05 : 0.13;
     options.max_usable_range_m = 12.0;
+    options.free_range_without_return_m = 8.0;
     options.min_hits = 1 + trial % 2;
     options.threads = 1 + trial % 3;
     std::vector<LaserScan> scans;
@@ -225,11 +226,11 @@ TEST(RenderGrid, NothingToTellIsEmpty) {
   const LaserScan open = ScanOf(std::vector<float>(10, kNoReturn), 0.0, 0.1);
   EXPECT_TRUE(RenderGrid({}, 0, {}).cells.empty());
   EXPECT_TRUE(RenderGrid({{{}, 0, &none}, {{}, 0, &invalid}}, 0, {}).cells.empty());
-  EXPECT_TRUE(RenderGrid({{{}, 1, &open}}, 0, {}).cells.empty());
+  EXPECT_TRUE(RenderGrid({{{}, 0, &open}}, 0, {}).cells.empty());
   GridOptions options;
+  options.free_range_without_return_m = 4.0;
   EXPECT_GT(KnownArea(RenderGrid({{{}, 0, &open}}, 0, options)), 0.0);
-  options.free_range_without_return_m = 0.0;
-  EXPECT_TRUE(RenderGrid({{{}, 0, &open}}, 0, options).cells.empty());
+  EXPECT_TRUE(RenderGrid({{{}, 1, &open}}, 0, options).cells.empty());
   EXPECT_EQ(KnownArea(RenderGrid({}, 0, {})), 0.0);
 }
 

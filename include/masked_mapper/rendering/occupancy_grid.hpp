@@ -15,9 +15,11 @@ enum class Cell : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
 
 struct GridOptions {
   double resolution_m = 0.05;
-  double max_usable_range_m = 30.0;          ///< beams are drawn up to here
-  double free_range_without_return_m = 8.0;  ///< what a beam that met nothing clears; 0: nothing
-  double occupied_ratio = 0.4;  ///< share of hits among visits from which a cell is a wall
+  double max_usable_range_m = 30.0;  ///< beams are drawn up to here
+  /// What a beam that met nothing clears. Nothing by default: indoors glass and black walls are the
+  /// usual reason, and clearing would open windows onto free space that nobody saw.
+  double free_range_without_return_m = 0.0;
+  double occupied_ratio = 0.25;  ///< share of hits among visits from which a cell is a wall
   int min_hits = 2;  ///< hits a wall cell needs at the least; with fewer it stays unknown
   int threads = 1;
 };
