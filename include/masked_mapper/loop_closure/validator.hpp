@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loop validation (Section III-E): a match is a hypothesis until enough loops agree with it.
+//
+// The paper's rule: close the path of least error between the ends of a hypothesis into a loop with
+// it; if the loop's Mahalanobis distance from the identity is small, the hypothesis and every other
+// unvalidated closure on the path get a vote; take the most redundant edge of the path away and try
+// again, until there are votes enough or no path is left.
+//
+// Alone it counts the same evidence several times (ways that share their uncertain part, closures
+// of one place) and takes a vote from loops so uncertain that anything agrees. Where places look
+// alike, that lets groups of wrong closures in, so four conditions of ours stand beside it;
+// PaperRule() switches them off.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "masked_mapper/loop_closure/loop_search.hpp"
@@ -13,17 +24,29 @@ struct ValidatorOptions {
   int votes_needed = 6;  ///< paper: 6
   double max_loop_error =
       2.0;  ///< Mahalanobis distance from identity of an agreeing loop; paper: 2
-  /// Trace (m^2 and rad^2) of the covariance beyond which a loop agrees with anything and is no
-  /// evidence; the search ends there. Ours.
+
+  /// Trace (m^2 and rad^2, Eq. 2) beyond which a loop would agree with whatever the matcher finds
+  /// and is no evidence. The search ends there, which also keeps its cost apart from the size of
+  /// the map.
   double max_loop_trace = 2.0;
-  /// Trace up to which a loop is so sure that every one is evidence; a looser one votes once per
-  /// set of unvalidated closures on it, since ways that share their uncertain part repeat each
-  /// other. Ours.
-  double tight_loop_trace = 0.125;
-  /// Mahalanobis distance beyond which the best validated way forbids a closure for now. Ours.
-  double max_contradiction = 5.0;
-  int max_loops = 40;  ///< loops looked at for one hypothesis. Ours.
+  /// Trace up to which a loop is so sure that agreeing with it nearly means being right: each is a
+  /// vote. A looser loop votes once for every set of unvalidated closures on it, and
+  /// `max_loose_votes` times at most.
+  double tight_loop_trace = 0.25;
+  int max_loose_votes = 2;
+  /// Places, farther apart than `place_radius_m`, whose closures have to agree before closures
+  /// enter that no sure way to the rest of the map confirms; more the more they surprise
+  /// (PlacesNeeded()).
+  int places_needed = 3;
+  double place_radius_m = 5.0;
+  /// Mahalanobis distance of the best validated way beyond which a closure stays out.
+  double max_contradiction = 8.0;
+
+  int max_loops = 40;  ///< loops looked at for one hypothesis; ours
 };
+
+/// The paper's rule: none of the conditions of ours (the bound on the number of loops stays).
+ValidatorOptions PaperRule();
 
 class LoopValidator {
  public:
@@ -32,19 +55,33 @@ class LoopValidator {
   /// Adds matches as hypotheses and judges each, over the graph's odometry, floor-change and
   /// validated closure edges and over the other hypotheses. Returns the hypotheses that became
   /// valid by this call (the new ones or older ones that got their last vote), in order of ids. The
-  /// caller adds their edges to the graph before the next call.
+  /// caller adds their edges to the graph before the next call. Ends of a match must be nodes of
+  /// the graph, and differ.
   std::vector<HypothesisId> Judge(const PoseGraph& graph, const std::vector<Hypothesis>& matches);
 
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
 
  private:
+  // What is known of a hypothesis beside its votes.
+  struct Standing {
+    int loose_votes = 0;
+    std::vector<NodeId> places;  // newer ends of it and of those that agree with it, far apart
+    // The last refusal, so that it is not worked out again while nothing has changed.
+    std::size_t refused_with_places = 0;
+    int refused_with_validated = -1;
+  };
+
   void JudgeOne(const PoseGraph& graph, HypothesisId id);
-  void Vote(const PoseGraph& graph, HypothesisId id);
-  bool Contradicted(const PoseGraph& graph, const Hypothesis& hypothesis);
+  void CountLoop(const PoseGraph& graph, const std::vector<HypothesisId>& agreeing, bool tight);
+  void Admit(const PoseGraph& graph, HypothesisId id);
+  bool MayEnter(const PoseGraph& graph, HypothesisId id);
 
   ValidatorOptions options_;
   std::vector<Hypothesis> hypotheses_;
+  std::vector<Standing> standings_;    // of the hypotheses
+  std::vector<HypothesisId> waiting_;  // enough votes, not admitted yet
   LoopSearch search_;
+  int validated_ = 0;
   std::vector<HypothesisId> newly_valid_;  // of the running call
 };
 
