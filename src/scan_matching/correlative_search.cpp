@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <unordered_map>
 
@@ -104,6 +105,14 @@ void Offer(const SearchProblem& problem, const GridPose& pose, double score, Sea
   *result = {true, pose, score, objective};
 }
 
+// Whether all offsets from (x, y) to (x + span - 1, y + span - 1) lie in the box.
+bool Contains(const GridBox& box, std::int32_t angle, std::int32_t x, std::int32_t y,
+              std::int32_t span) {
+  return std::abs(angle - box.centre.angle) <= box.half_angle && x >= box.centre.x - box.half_x &&
+         x + span - 1 <= box.centre.x + box.half_x && y >= box.centre.y - box.half_y &&
+         y + span - 1 <= box.centre.y + box.half_y;
+}
+
 // The search of one problem; its blocks wait in a queue that all problems share.
 class Search {
  public:
@@ -175,13 +184,14 @@ class Search {
   }
 
   void Consider(int level, const GridPose& pose, double score, std::vector<Block>* blocks) {
+    const std::int32_t span = 1 << level;
+    if (Contains(problem_.left_out, pose.angle, pose.x * span, pose.y * span, span)) return;
     if (level == 0) {
       Offer(problem_, pose, score, &result_);
       RaiseNeeded(result_.objective);
       return;
     }
     const SearchGrid& grid = problem_.grid;
-    const std::int32_t span = 1 << level;
     const double chi2 = SmallestChi2(problem_, pose.angle, std::max(pose.x * span, -grid.half_x),
                                      std::min(pose.x * span + span - 1, grid.half_x),
                                      std::max(pose.y * span, -grid.half_y),
@@ -266,6 +276,7 @@ SearchResult SearchExhaustively(const SearchProblem& problem) {
     CellsAtPose(table, *problem.points_in_query, pose, cells_x.data(), cells_y.data());
     for (std::int32_t x = -grid.half_x; x <= grid.half_x; ++x) {
       for (std::int32_t y = -grid.half_y; y <= grid.half_y; ++y) {
+        if (Contains(problem.left_out, angle, x, y, 1)) continue;
         std::uint32_t sum = 0;
         for (std::size_t i = 0; i < count; ++i) {
           const std::int32_t column = cells_x[i] + x;

@@ -27,23 +27,6 @@ std::int32_t HalfWindow(double variance, double sigmas, double smallest, double 
   return static_cast<std::int32_t>(std::ceil(half / step - 1e-9));
 }
 
-SearchGrid GridFor(const UncertainPose2& guess, const MatcherOptions& options) {
-  SearchGrid grid;
-  grid.T_reference_query_guess = guess.mean;
-  grid.resolution_m = options.table.resolution_m;
-  grid.angle_step = DegToRad(options.angle_step_deg);
-  const auto half_m = [&](double variance) {
-    return HalfWindow(variance, options.window_sigmas, options.min_window_m, options.max_window_m,
-                      grid.resolution_m);
-  };
-  grid.half_x = half_m(guess.covariance(0, 0));
-  grid.half_y = half_m(guess.covariance(1, 1));
-  grid.half_angle =
-      HalfWindow(guess.covariance(2, 2), options.window_sigmas, DegToRad(options.min_window_deg),
-                 DegToRad(options.max_window_deg), grid.angle_step);
-  return grid;
-}
-
 // Calls work(0) ... work(count - 1), each once, on up to `threads` threads.
 void ForEach(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
   const std::size_t workers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
@@ -107,6 +90,23 @@ class TableCache {
 
 }  // namespace
 
+SearchGrid SearchGridFor(const UncertainPose2& guess, const MatcherOptions& options) {
+  SearchGrid grid;
+  grid.T_reference_query_guess = guess.mean;
+  grid.resolution_m = options.table.resolution_m;
+  grid.angle_step = DegToRad(options.angle_step_deg);
+  const auto half_m = [&](double variance) {
+    return HalfWindow(variance, options.window_sigmas, options.min_window_m, options.max_window_m,
+                      grid.resolution_m);
+  };
+  grid.half_x = half_m(guess.covariance(0, 0));
+  grid.half_y = half_m(guess.covariance(1, 1));
+  grid.half_angle =
+      HalfWindow(guess.covariance(2, 2), options.window_sigmas, DegToRad(options.min_window_deg),
+                 DegToRad(options.max_window_deg), grid.angle_step);
+  return grid;
+}
+
 class JointMatcher::Impl {
  public:
   explicit Impl(const MatcherOptions& options)
@@ -127,7 +127,7 @@ class JointMatcher::Impl {
       SearchProblem problem;
       problem.table = tables[i].get();
       problem.points_in_query = &query->second;
-      problem.grid = GridFor(pairs[i].T_reference_query_guess, options_);
+      problem.grid = SearchGridFor(pairs[i].T_reference_query_guess, options_);
       problem.prior_root = PriorRoot(pairs[i].T_reference_query_guess.covariance, problem.grid);
       problem.prior_weight = options_.prior_weight;
       problem.min_score = options_.min_score;
@@ -175,8 +175,33 @@ class JointMatcher::Impl {
         const std::size_t i = share + k * shares;
         results[i] = Refine(pairs[i], mine[k], found[k]);
       }
+      if (options_.look_elsewhere) {
+        const std::vector<SearchResult> elsewhere = SearchElsewhere(mine, found);
+        for (std::size_t k = 0; k < mine.size(); ++k) {
+          if (!found[k].found || !elsewhere[k].found) continue;
+          results[share + k * shares].elsewhere =
+              Elsewhere{PoseOf(mine[k].grid, elsewhere[k].best), elsewhere[k].score};
+        }
+      }
     });
     return results;
+  }
+
+  std::vector<SearchResult> SearchElsewhere(std::vector<SearchProblem> problems,
+                                            const std::vector<SearchResult>& found) const {
+    const auto steps = [](double distance, double step) {
+      return static_cast<std::int32_t>(std::floor(distance / step + 1e-9));
+    };
+    for (std::size_t k = 0; k < problems.size(); ++k) {
+      SearchProblem& problem = problems[k];
+      const std::int32_t half_m = steps(options_.elsewhere_m, problem.grid.resolution_m);
+      problem.left_out = {found[k].best,
+                          steps(DegToRad(options_.elsewhere_deg), problem.grid.angle_step), half_m,
+                          half_m};
+      // Without a match there is nothing to compare with, and no score reaches 2.
+      problem.min_score = found[k].found ? options_.elsewhere_floor * found[k].score : 2.0;
+    }
+    return SearchJointly(problems);
   }
 
   MatchResult Refine(const MatchPair& pair, const SearchProblem& problem,

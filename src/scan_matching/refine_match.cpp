@@ -10,6 +10,8 @@
 namespace masked_mapper {
 namespace {
 
+constexpr double kStepTolerance = 1e-5;  // m, translation and rotation at the points' radius
+
 // The table at a position, with its first and second derivatives per cell.
 struct Surface {
   double value = 0.0;
@@ -70,7 +72,7 @@ bool ReadSurface(const LookupTable::Level& cells, double x, double y, Surface* s
 void KeepDownward(Surface* surface) {
   const double mean = 0.5 * (surface->xx + surface->yy);
   const double difference = 0.5 * (surface->xx - surface->yy);
-  const double root = std::hypot(difference, surface->xy);
+  const double root = std::sqrt(difference * difference + surface->xy * surface->xy);
   const double high = mean + root;
   if (high <= 0.0) return;
   const double low = std::min(mean - root, 0.0);
@@ -86,47 +88,44 @@ struct Response {
   double score = 0.0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d downward_hessian = Eigen::Matrix3d::Zero();  // of the points' downward curvature
 };
 
+enum class Curvature { kTrue, kDownward };
+
 Response RespondAt(const LookupTable& table, const std::vector<Eigen::Vector2d>& points,
-                   const Pose2& pose) {
+                   const Pose2& pose, Curvature curvature) {
   const LookupTable::Level& cells = table.level(0);
   const double scale = 1.0 / table.resolution();
-  const double c = std::cos(pose.theta);
-  const double s = std::sin(pose.theta);
+  const double c = scale * std::cos(pose.theta);
+  const double s = scale * std::sin(pose.theta);
   Response response;
+  Eigen::Matrix3d& hessian = response.hessian;
   Surface surface;
   for (const Eigen::Vector2d& point : points) {
-    const double x = c * point.x() - s * point.y();
+    const double x = c * point.x() - s * point.y();  // cells, from the query's origin
     const double y = s * point.x() + c * point.y();
-    if (!ReadSurface(cells, scale * (pose.x + x), scale * (pose.y + y), &surface)) continue;
+    if (!ReadSurface(cells, scale * pose.x + x, scale * pose.y + y, &surface)) continue;
+    const Eigen::Vector2d& g = surface.gradient;
     response.score += surface.value;
-    const Eigen::Vector2d g = scale * surface.gradient;
-    response.gradient += Eigen::Vector3d(g.x(), g.y(), -y * g.x() + x * g.y());
-    const double bend = -x * g.x() - y * g.y();  // of the point's path as the angle changes
-    const auto add = [&](Eigen::Matrix3d* hessian, double bend_term) {
-      const double xx = scale * scale * surface.xx;
-      const double xy = scale * scale * surface.xy;
-      const double yy = scale * scale * surface.yy;
-      (*hessian)(0, 0) += xx;
-      (*hessian)(0, 1) += xy;
-      (*hessian)(1, 1) += yy;
-      (*hessian)(0, 2) += -y * xx + x * xy;
-      (*hessian)(1, 2) += -y * xy + x * yy;
-      (*hessian)(2, 2) += y * y * xx - 2.0 * x * y * xy + x * x * yy + bend_term;
-    };
-    add(&response.hessian, bend);
-    KeepDownward(&surface);
-    add(&response.downward_hessian, std::min(bend, 0.0));
+    response.gradient += Eigen::Vector3d(g.x(), g.y(), x * g.y() - y * g.x());
+    double bend = -x * g.x() - y * g.y();  // of the point's path as the angle changes
+    if (curvature == Curvature::kDownward) {
+      KeepDownward(&surface);
+      bend = std::min(bend, 0.0);
+    }
+    hessian(0, 0) += surface.xx;
+    hessian(0, 1) += surface.xy;
+    hessian(1, 1) += surface.yy;
+    hessian(0, 2) += x * surface.xy - y * surface.xx;
+    hessian(1, 2) += x * surface.yy - y * surface.xy;
+    hessian(2, 2) += y * y * surface.xx - 2.0 * x * y * surface.xy + x * x * surface.yy + bend;
   }
   const double norm = 1.0 / (255.0 * static_cast<double>(points.size()));
+  const Eigen::Vector3d units(scale, scale, 1.0);
   response.score *= norm;
-  response.gradient *= norm;
-  for (Eigen::Matrix3d* hessian : {&response.hessian, &response.downward_hessian}) {
-    *hessian *= norm;
-    *hessian = Eigen::Matrix3d(hessian->selfadjointView<Eigen::Upper>());
-  }
+  response.gradient = norm * units.cwiseProduct(response.gradient);
+  hessian = Eigen::Matrix3d(hessian.selfadjointView<Eigen::Upper>());
+  hessian = norm * (units.asDiagonal() * hessian * units.asDiagonal());
   return response;
 }
 
@@ -239,10 +238,15 @@ constexpr double kStepGrowth = 1.25;   // each step over the one before
 constexpr double kNegligible = 0.002;  // likelihood at which a side ends
 
 Moments SideMoments(const LocalSurface& surface, const Eigen::Vector3d& direction, double top,
-                    const RefineOptions& options) {
+                    double core, const RefineOptions& options) {
   Moments moments;
   const auto likelihood = [&](double distance) {
     return std::exp(options.sharpness * (surface(distance * direction) - top));
+  };
+  // Ours: a square discounted within the blur, where it would tell the width of the blur.
+  const auto spread = [&](double distance) {
+    const double square = distance * distance;
+    return square * square / (square + core * core);
   };
   double last = 0.0;
   double last_value = likelihood(0.0);
@@ -250,7 +254,7 @@ Moments SideMoments(const LocalSurface& surface, const Eigen::Vector3d& directio
     const double next = std::min(last + step, options.reach_m);
     const double value = likelihood(next);
     moments.mass += 0.5 * (next - last) * (last_value + value);
-    moments.second += 0.5 * (next - last) * (last_value * last * last + value * next * next);
+    moments.second += 0.5 * (next - last) * (last_value * spread(last) + value * spread(next));
     if (value < kNegligible) break;
     last = next;
     last_value = value;
@@ -270,32 +274,37 @@ RefinedMatch RefineMatch(const LookupTable& table,
   const double max_turn = DegToRad(options.max_turn_deg);
   const Pose2& start = T_reference_query_initial;
 
+  // Damping is relative to the curvature of a point on the ridge of a wall.
+  const double sigma = std::max(table.sigma(), table.resolution());
+  const Eigen::Vector3d unit_damping = Eigen::Vector3d(1.0, 1.0, radius * radius) / (sigma * sigma);
+  double damping = 1e-4;
   Pose2 pose = start;
-  Response response = RespondAt(table, points_in_query, pose);
-  double damping = 1e-3;
-  const Eigen::Vector3d unit_damping(1.0, 1.0, radius * radius);
+  Response response = RespondAt(table, points_in_query, pose, Curvature::kTrue);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    // The damping is relative to the curvature of a point on the ridge of a wall.
-    const double ridge = 1.0 / (table.sigma() * table.sigma());
-    Eigen::Matrix3d curvature = -response.downward_hessian;
-    curvature.diagonal() += (damping * ridge) * unit_damping;
-    const Eigen::Vector3d step = curvature.ldlt().solve(response.gradient);
+    Eigen::LLT<Eigen::Matrix3d> curvature(Eigen::Matrix3d((damping * unit_damping).asDiagonal()) -
+                                          response.hessian);
+    if (curvature.info() != Eigen::Success) {
+      const Response downward = RespondAt(table, points_in_query, pose, Curvature::kDownward);
+      curvature.compute(Eigen::Matrix3d((damping * unit_damping).asDiagonal()) - downward.hessian);
+      if (curvature.info() != Eigen::Success) break;
+    }
+    const Eigen::Vector3d step = curvature.solve(response.gradient);
     if (!step.allFinite()) break;
     const Pose2 next{pose.x + step.x(), pose.y + step.y(), WrapAngle(pose.theta + step.z())};
     if (Distance(start, next) > options.max_shift_m ||
         std::abs(WrapAngle(next.theta - start.theta)) > max_turn) {
-      break;
+      damping *= 10.0;  // along a ridge a step may be far too long, and a shorter one right
+      continue;
     }
-    const bool is_small = step.head<2>().norm() + radius * std::abs(step.z()) < 1e-5;
-    const Response at_next = RespondAt(table, points_in_query, next);
+    const Response at_next = RespondAt(table, points_in_query, next, Curvature::kTrue);
     if (at_next.score >= response.score) {
       pose = next;
       response = at_next;
-      damping = std::max(1e-6, 0.1 * damping);
+      damping = std::max(1e-8, 0.1 * damping);
     } else {
       damping *= 10.0;
     }
-    if (is_small) {
+    if (step.head<2>().norm() + radius * std::abs(step.z()) < kStepTolerance) {
       match.converged = true;
       break;
     }
@@ -321,8 +330,8 @@ Eigen::Matrix3d ResponseCovariance(const LookupTable& table,
   Eigen::Vector3d variances;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = axes.eigenvectors().col(i);
-    const Moments ahead = SideMoments(surface, axis, top, options);
-    const Moments behind = SideMoments(surface, -axis, top, options);
+    const Moments ahead = SideMoments(surface, axis, top, table.sigma(), options);
+    const Moments behind = SideMoments(surface, -axis, top, table.sigma(), options);
     variances(i) = (ahead.second + behind.second) / (ahead.mass + behind.mass);
   }
   return AssembleCovariance(axes.eigenvectors(), variances, radius, options);

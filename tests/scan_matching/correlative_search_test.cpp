@@ -73,6 +73,10 @@ std::unique_ptr<RandomCase> DrawCase(int seed) {
     problem.prior_weight = prior == 1 ? 0.005 : Uniform(0.0, 0.1, &random);
   }
   problem.min_score = upto(2) == 0 ? 0.0 : Uniform(0.0, 0.9, &random);
+  if (upto(3) == 0) {
+    problem.left_out = {
+        {upto(12) - 6, upto(50) - 25, upto(50) - 25}, upto(5) - 1, upto(20), upto(20)};
+  }
   return drawn;
 }
 

@@ -35,6 +35,14 @@ struct GridPose {
 /// T_reference_query of a grid pose.
 Pose2 PoseOf(const SearchGrid& grid, const GridPose& pose);
 
+/// Grid poses near another, in all three directions; none as it comes.
+struct GridBox {
+  GridPose centre;
+  std::int32_t half_angle = -1;
+  std::int32_t half_x = -1;
+  std::int32_t half_y = -1;
+};
+
 struct SearchProblem {
   const LookupTable* table = nullptr;
   const std::vector<Eigen::Vector2d>* points_in_query = nullptr;  ///< finite; within 10^6 cells
@@ -43,6 +51,7 @@ struct SearchProblem {
   Eigen::Matrix3d prior_root = Eigen::Matrix3d::Zero();
   double prior_weight = 0.0;
   double min_score = 0.0;
+  GridBox left_out;  ///< no answer from here
 };
 
 struct SearchResult {

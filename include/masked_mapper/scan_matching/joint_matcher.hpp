@@ -7,9 +7,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/scan_matching/block_sums.hpp"
 #include "masked_mapper/scan_matching/lookup_table.hpp"
 #include "masked_mapper/scan_matching/refine_match.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
@@ -30,6 +32,19 @@ struct MatcherOptions {
   double prior_weight = 0.005;   ///< objective = score - prior_weight * chi^2 of the guess
   std::size_t table_memory_mib = 64;  ///< budget of cached look-up tables
   int threads = 1;
+  /// Also look for the best pose more than elsewhere_m or elsewhere_deg away from the match (along
+  /// any axis), of at least elsewhere_floor times its score. Costs about half a match more.
+  bool look_elsewhere = false;
+  double elsewhere_m = 0.5;      ///< m
+  double elsewhere_deg = 5.0;    ///< deg
+  double elsewhere_floor = 0.7;  ///< of the match's score
+};
+
+/// A second place in the window where the query fits. On a ridge, as in a corridor, it is explained
+/// by the match's covariance; one that is not makes the match ambiguous.
+struct Elsewhere {
+  Pose2 T_reference_query;  ///< to the cell
+  double score = 0.0;       ///< 0-1, may exceed that of the match, which has the better prior
 };
 
 /// One pair offered to the matcher. Scans are named by a caller's key so that tables can be cached.
@@ -47,8 +62,16 @@ struct MatchResult {
   /// Matched: the optimum refined below the cell, with the covariance of the response surface.
   /// Otherwise the guess.
   UncertainPose2 T_reference_query;
-  double score = 0.0;  ///< 0-1 at the optimum; for an abandoned pair the bound it was given up at
+  /// 0-1, of the best pose of the search grid; for an abandoned pair a bound that no pose of the
+  /// window exceeds, below min_score.
+  double score = 0.0;
+  std::optional<Elsewhere> elsewhere;  ///< when asked for and there is one
 };
+
+/// The window of a match: window_sigmas deviations of the guess to either side, within the options'
+/// limits, along the axes of the reference frame.
+SearchGrid SearchGridFor(const UncertainPose2& T_reference_query_guess,
+                         const MatcherOptions& options);
 
 class JointMatcher {
  public:
