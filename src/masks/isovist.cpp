@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/sensor/beam_directions.hpp"
+#include "masked_mapper/sensor/beam_sweep.hpp"
 
 namespace masked_mapper {
 
@@ -13,7 +13,7 @@ std::vector<Eigen::Vector2d> Isovist(const LaserScan& scan, const IsovistOptions
   corners.reserve(scan.size() + 1);
   const Eigen::Vector2d laser_in_robot = scan.T_robot_laser.Translation();
   const double reach = std::min<double>(scan.max_range, options.max_range_m);
-  auto direction = BeamDirections::InRobot(scan);
+  auto direction = BeamSweep::InRobot(scan);
   for (const float range : scan.ranges) {
     if (!std::isnan(range)) {
       corners.emplace_back(laser_in_robot + std::min<double>(range, reach) * direction.Current());

@@ -32,9 +32,10 @@ struct Opening {
   Eigen::Vector2d right_in_robot =
       Eigen::Vector2d::Zero();  ///< m, clockwise end as seen from the laser
   Eigen::Vector2d left_in_robot = Eigen::Vector2d::Zero();  ///< m, counter-clockwise end
-  double direction = 0.0;  ///< rad in the robot frame, from the laser to the middle of the opening
-  double width = 0.0;      ///< m
-  double angle = 0.0;      ///< rad, between the two ends as seen from the laser
+  double direction =
+      0.0;             ///< rad in the robot frame, half-way between the ends as seen from the laser
+  double width = 0.0;  ///< m
+  double angle = 0.0;  ///< rad, between the two ends as seen from the laser
 };
 
 /// Openings counter-clockwise by the first beam of their runs.
