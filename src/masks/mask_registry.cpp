@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "masked_mapper/log/did_you_mean.hpp"
+#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/masks/combined_masks.hpp"
 #include "masked_mapper/masks/never_always_masks.hpp"
 
@@ -55,34 +56,17 @@ Factories& Registry() {
   return factories;
 }
 
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replace}));
-    }
+[[noreturn]] void FailUnknown(std::string_view name) {
+  std::vector<std::string> known = RegisteredMasks();
+  known.insert(known.end(), std::begin(kCombinations), std::end(kCombinations));
+  std::string hint = DidYouMean(name, known);
+  if (hint.empty()) {
+    for (const std::string& mask : RegisteredMasks()) hint += (hint.empty() ? "" : ", ") + mask;
+    hint = " (there are " + hint + ", and any(...), all(...), not(...) of them)";
   }
-  return row.back();
-}
-
-/// The end of an error message about a name that does not exist.
-std::string Suggestion(std::string_view unknown) {
-  std::vector<std::string> names = RegisteredMasks();
-  names.insert(names.end(), std::begin(kCombinations), std::end(kCombinations));
-  std::sort(names.begin(), names.end());
-  const auto nearest =
-      std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
-        return EditDistance(unknown, a) < EditDistance(unknown, b);
-      });
-  if (2 * EditDistance(unknown, *nearest) <= unknown.size()) {
-    return " (did you mean `" + *nearest + "`?)";
-  }
-  std::string list;
-  for (const std::string& name : RegisteredMasks()) list += (list.empty() ? "" : ", ") + name;
-  return " (there are " + list + ", and any(...), all(...), not(...) of them)";
+  const std::string quoted(name.substr(0, kMaxQuoted));
+  throw InputError("unknown mask `" + quoted + (quoted.size() < name.size() ? "..." : "") + "`" +
+                   hint);
 }
 
 /// expression := name | ("any" | "all") "(" expression { "," expression } ")" | "not" "("
@@ -110,12 +94,7 @@ class ExpressionParser {
     if (IsCombination(name)) return Combine(name, ParseParts(name, depth));
 
     const auto factory = Registry().find(name);
-    if (factory == Registry().end()) {
-      const std::string_view quoted = name.substr(0, kMaxQuoted);
-      throw std::invalid_argument("unknown mask `" + std::string(quoted) +
-                                  (quoted.size() < name.size() ? "..." : "") + "`" +
-                                  (quoted.size() < name.size() ? "" : Suggestion(name)));
-    }
+    if (factory == Registry().end()) FailUnknown(name);
     if (Peek() == '(') Fail("`" + std::string(name) + "` takes no parts");
     return factory->second(options_);
   }
@@ -148,8 +127,7 @@ class ExpressionParser {
   }
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw std::invalid_argument("mask expression, character " + std::to_string(next_ + 1) + ": " +
-                                what);
+    throw InputError("mask expression, character " + std::to_string(next_ + 1) + ": " + what);
   }
 
   std::string_view text_;

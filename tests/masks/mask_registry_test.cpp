@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "masked_mapper/log/input_error.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -31,7 +33,7 @@ bool FiresFor(const std::string& expression) { return MakeMask(expression, {})->
 std::string ErrorOf(const std::string& expression) {
   try {
     MakeMask(expression, {});
-  } catch (const std::invalid_argument& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";

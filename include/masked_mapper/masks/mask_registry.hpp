@@ -21,13 +21,14 @@ struct MaskOptions {
 using MaskFactory = std::function<std::unique_ptr<Mask>(const MaskOptions&)>;
 
 /// Adds a mask under a name ([a-z0-9_]+, not a combination's); true, so that one line at namespace
-/// scope registers a user's mask. A name taken twice is the caller's bug.
+/// scope registers a user's mask. A bad name, or one taken twice, is the caller's bug:
+/// std::logic_error.
 bool RegisterMask(const std::string& name, MaskFactory factory);
 
 /// The names that an expression may use, sorted.
 std::vector<std::string> RegisteredMasks();
 
-/// Builds the mask of an expression. Throws std::invalid_argument with one line that says what is
+/// Builds the mask of an expression. Throws InputError with one line that says what is
 /// wrong and where ("unknown mask `openingz` (did you mean `openings`?)").
 std::unique_ptr<Mask> MakeMask(const std::string& expression, const MaskOptions& options);
 
