@@ -9,8 +9,6 @@ namespace {
 
 /// Shorter steps are noise of a robot at rest, m.
 constexpr double kMinStep = 0.05;
-/// Bounds the memory of a log whose stamps stand still.
-constexpr std::size_t kMaxHorizonScans = 100;
 
 }  // namespace
 
@@ -50,39 +48,42 @@ double DeadEnd::Turned(double min_distance_m) const {
   return std::abs(WrapAngle(T_odom_robot_->theta - faced));
 }
 
-void DirectionTracks::Observe(double stamp, const std::vector<double>& directions_in_odom) {
-  stamps_.push_back(stamp);
-  const std::size_t scan = next_scan_++;
+void DirectionTracks::Observe(double path_length, const std::vector<double>& directions_in_odom) {
+  path_lengths_.push_back(path_length);
+  const std::size_t view = next_view_++;
   Forget();
-  // Each direction goes on with the nearest track that this scan has not yet prolonged.
+  // Each direction goes on with the nearest track that this view has not yet prolonged.
   for (const double direction : directions_in_odom) {
     Track* nearest = nullptr;
-    double smallest_step = DegToRad(options_.max_step_deg);
+    double smallest_jump = DegToRad(options_.max_jump_deg);
     for (Track& track : tracks_) {
-      if (track.back().scan == scan) continue;
-      const double step = std::abs(WrapAngle(direction - track.back().direction));
-      if (step > smallest_step) continue;
-      smallest_step = step;
+      if (track.back().view == view) continue;
+      const double jump = std::abs(WrapAngle(direction - track.back().direction));
+      if (jump > smallest_jump) continue;
+      smallest_jump = jump;
       nearest = &track;
     }
     if (nearest == nullptr) {
-      tracks_.push_back({{scan, direction}});
+      tracks_.push_back({{view, direction}});
     } else {
       const double last = nearest->back().direction;
-      nearest->push_back({scan, last + WrapAngle(direction - last)});
+      nearest->push_back({view, last + WrapAngle(direction - last)});
     }
   }
 }
 
 void DirectionTracks::Forget() {
-  const auto min_scans = static_cast<std::size_t>(std::max(1, options_.min_horizon_scans));
-  while (stamps_.size() > std::max(min_scans, kMaxHorizonScans) ||
-         (stamps_.size() > min_scans && stamps_.back() - stamps_.front() > options_.horizon_s)) {
-    stamps_.pop_front();
-  }
-  const std::size_t oldest = next_scan_ - stamps_.size();
+  const auto min_views = static_cast<std::size_t>(std::max(1, options_.min_views));
+  const auto max_views = static_cast<std::size_t>(std::max(1, options_.max_views));
+  const auto is_beyond_horizon = [&](double path_length) {
+    return path_lengths_.size() > max_views ||
+           (path_lengths_.size() > min_views &&
+            path_lengths_.back() - path_length > options_.horizon_m);
+  };
+  while (is_beyond_horizon(path_lengths_.front())) path_lengths_.pop_front();
+  const std::size_t oldest = next_view_ - path_lengths_.size();
   for (Track& track : tracks_) {
-    while (!track.empty() && track.front().scan < oldest) track.pop_front();
+    while (!track.empty() && track.front().view < oldest) track.pop_front();
   }
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
                                [](const Track& track) { return track.empty(); }),
@@ -91,11 +92,10 @@ void DirectionTracks::Forget() {
 
 std::vector<double> DirectionTracks::Kept() const {
   std::vector<double> kept;
-  const auto min_scans = static_cast<std::size_t>(std::max(1, options_.min_horizon_scans));
-  if (stamps_.size() < min_scans) return kept;
+  if (path_lengths_.size() < static_cast<std::size_t>(std::max(1, options_.min_views))) return kept;
   for (const Track& track : tracks_) {
     const auto count = static_cast<double>(track.size());
-    if (count < options_.min_share * static_cast<double>(stamps_.size())) continue;
+    if (count < options_.min_share * static_cast<double>(path_lengths_.size())) continue;
     double mean = 0.0;
     for (const Sighting& sighting : track) mean += sighting.direction / count;
     double variance = 0.0;
@@ -111,15 +111,26 @@ std::vector<double> DirectionTracks::Kept() const {
 OpeningsMask::OpeningsMask(const OpeningsMaskOptions& options)
     : options_(options), tracks_(options), course_(options.course_distance_m) {}
 
+bool OpeningsMask::IsNewView(const Pose2& T_odom_robot) const {
+  if (!T_odom_view_) return true;
+  return Distance(*T_odom_view_, T_odom_robot) >= options_.view_step_m ||
+         std::abs(WrapAngle(T_odom_robot.theta - T_odom_view_->theta)) >=
+             DegToRad(options_.view_step_deg);
+}
+
 void OpeningsMask::Observe(const MaskObservation& observation) {
   const Pose2& T_odom_robot = observation.T_odom_robot;
   course_.Observe(T_odom_robot);
   dead_end_.Observe(T_odom_robot);
-  std::vector<double> directions_in_odom;
-  for (const Opening& opening : FindOpenings(observation.scan, options_.detection)) {
-    directions_in_odom.push_back(T_odom_robot.theta + opening.direction);
+  if (IsNewView(T_odom_robot)) {
+    if (T_odom_view_) path_length_ += Distance(*T_odom_view_, T_odom_robot);
+    T_odom_view_ = T_odom_robot;
+    std::vector<double> directions_in_odom;
+    for (const Opening& opening : FindOpenings(observation.scan, options_.detection)) {
+      directions_in_odom.push_back(T_odom_robot.theta + opening.direction);
+    }
+    tracks_.Observe(path_length_, directions_in_odom);
   }
-  tracks_.Observe(observation.scan.stamp, directions_in_odom);
 
   // (e)
   const std::vector<double> kept = tracks_.Kept();

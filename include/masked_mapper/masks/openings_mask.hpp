@@ -18,13 +18,18 @@ namespace masked_mapper {
 struct OpeningsMaskOptions {
   OpeningOptions detection;
 
-  // (d) Ours but for the idea: a direction is kept when it was seen in `min_share` of the scans of
-  // the horizon, with a standard deviation of at most `max_deviation_deg`.
-  double horizon_s = 1.5;           ///< s
-  int min_horizon_scans = 4;        ///< however long ago, for slow scanners
+  // (d) Ours but for the idea: a direction is kept when it was seen in `min_share` of the views of
+  // the horizon, with a standard deviation of at most `max_deviation_deg`. The horizon counts the
+  // way and not the time, so that fast and slow robots have the same evidence; a robot at rest sees
+  // nothing new.
+  double view_step_m = 0.1;         ///< m between two views, or
+  double view_step_deg = 5.0;       ///< deg turned between them
+  double horizon_m = 0.5;           ///< m of path
+  int min_views = 4;                ///< in the horizon, however far back, for fast robots
+  int max_views = 12;               ///< in the horizon, for robots that turn on the spot
   double min_share = 0.7;           ///< 0-1
   double max_deviation_deg = 12.0;  ///< deg
-  double max_step_deg = 20.0;       ///< deg between sightings of one direction
+  double max_jump_deg = 20.0;       ///< deg between sightings of one direction
 
   // (e)
   double min_turn_deg = 40.0;      ///< deg off the course; paper: 40
@@ -72,18 +77,19 @@ class DeadEnd {
   double forward_ = 0.0;  ///< m driven along the heading since the node; negative when reversing
 };
 
-/// Directions of openings over a short horizon.
+/// Directions of openings over a short horizon of views.
 class DirectionTracks {
  public:
   explicit DirectionTracks(const OpeningsMaskOptions& options) : options_(options) {}
 
-  void Observe(double stamp, const std::vector<double>& directions_in_odom);
+  /// A view after `path_length` metres of path.
+  void Observe(double path_length, const std::vector<double>& directions_in_odom);
   /// The directions seen often enough and steadily enough, rad in the odometry frame.
   std::vector<double> Kept() const;
 
  private:
   struct Sighting {
-    std::size_t scan;
+    std::size_t view;
     double direction;  ///< rad, unwrapped along its track
   };
   using Track = std::deque<Sighting>;
@@ -91,8 +97,8 @@ class DirectionTracks {
   void Forget();
 
   OpeningsMaskOptions options_;
-  std::deque<double> stamps_;  ///< of the scans within the horizon
-  std::size_t next_scan_ = 0;  ///< counts up; the scan in front of `stamps_` is next - size
+  std::deque<double> path_lengths_;  ///< m, of the views within the horizon
+  std::size_t next_view_ = 0;        ///< counts up; that in front of `path_lengths_` is next - size
   std::vector<Track> tracks_;
 };
 
@@ -106,10 +112,14 @@ class OpeningsMask : public Mask {
   void Restart() override;
 
  private:
+  bool IsNewView(const Pose2& T_odom_robot) const;
+
   OpeningsMaskOptions options_;
   DirectionTracks tracks_;
   Course course_;
   DeadEnd dead_end_;
+  std::optional<Pose2> T_odom_view_;  ///< where the robot looked last
+  double path_length_ = 0.0;          ///< m, from view to view
   bool fires_ = false;
 };
 
