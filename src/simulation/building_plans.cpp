@@ -5,6 +5,7 @@
 
 #include "masked_mapper/simulation/building_assembly.hpp"
 #include "masked_mapper/simulation/floor_planner.hpp"
+#include "masked_mapper/simulation/random_building.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -243,21 +244,21 @@ Building CampusBuilding() {
   {
     FloorPlanner planner(101);
     planner.SetLimits({0.0, 2.0}, {66.0, 66.0});
-    planner.SetVisitedRooms(3);
+    planner.SetVisitedRooms(4);
     AddBuildingA(planner, building, 0);
     AddFloor(building, planner.Plan("0", 0.0));
   }
   {
     FloorPlanner planner(102);
     planner.SetLimits({0.0, 2.0}, {74.0, 58.0});
-    planner.SetVisitedRooms(3);
+    planner.SetVisitedRooms(4);
     AddBuildingA(planner, building, 1);
     AddFloor(building, planner.Plan("1", 4.6));
   }
   {
     FloorPlanner planner(103);
     planner.SetLimits({0.0, 0.0}, {264.0, 82.0});
-    planner.SetVisitedRooms(8);
+    planner.SetVisitedRooms(12);
     AddBuildingA(planner, building, 2);
     planner.AddCorridor({66.0, 48.0}, {76.0, 48.0}, Offices(2.6, 4.0, 4.0));
     planner.AddCorridor({76.0, 48.0}, {104.0, 48.0}, Glazed(2.6));
@@ -271,7 +272,7 @@ Building CampusBuilding() {
   {
     FloorPlanner planner(104);
     planner.SetLimits({107.0, 15.0}, {173.5, 77.5});
-    planner.SetVisitedRooms(3);
+    planner.SetVisitedRooms(4);
     AddBuildingB(planner, building, 3);
     AddFloor(building, planner.Plan("3", 12.5));
   }
@@ -279,17 +280,17 @@ Building CampusBuilding() {
   building.stairs[0].way = StairwellWay(CampusStairwell());
   building.usual_tour.start_way_point = NearestWayPoint(building.floors[0], {40.0, 30.0});
   building.usual_tour.visits = {0, 1, 2, 3, 2, 0};
-  building.usual_tour.rest_per_metre = 1.5;
+  building.usual_tour.rest_per_metre = 1.75;
   return building;
 }
 
-std::vector<std::string> BuildingNames() { return {"campus", "corridors", "office", "tower"}; }
+std::vector<std::string> BuildingNames() { return {"campus", "corridors", "office", "random", "tower"}; }
 
 std::optional<Building> NamedBuilding(const std::string& name, std::uint64_t seed) {
   if (name == "campus") return CampusBuilding();
   if (name == "corridors") return CorridorsBuilding();
   if (name == "office") return OfficeBuilding();
-  static_cast<void>(seed);
+  if (name == "random") return RandomBuilding(seed);
   if (name == "tower") return TowerBuilding();
   return std::nullopt;
 }

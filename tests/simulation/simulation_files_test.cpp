@@ -2,6 +2,7 @@
 #include "masked_mapper/simulation/simulation_files.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -17,8 +18,9 @@ class SimulationFiles : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("masked_mapper_simulation_") + test->name());
+    folder_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("masked_mapper_simulation_") + test->name() + "_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

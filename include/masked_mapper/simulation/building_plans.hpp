@@ -19,10 +19,7 @@ Building CorridorsBuilding();
 Building TowerBuilding();
 /// The size of the paper's: three buildings, four floors, about 34 000 m^2 of bounding area.
 Building CampusBuilding();
-/// Another building for every seed: plan, size, floors, elevators and stairs.
-Building RandomBuilding(std::uint64_t seed);
-
-/// The names above in lower case: campus, corridors, office, random, tower.
+/// The names of those above in lower case, and `random` (random_building.hpp).
 std::vector<std::string> BuildingNames();
 /// Empty when there is no building of that name.
 std::optional<Building> NamedBuilding(const std::string& name, std::uint64_t seed);
