@@ -2,11 +2,14 @@
 #include "masked_mapper/motion/motion_estimator.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace masked_mapper {
 
 MotionEstimator::MotionEstimator(const MotionOptions& options)
-    : options_(options), wheels_(options.odometry), scan_odometry_(options.scans) {}
+    : options_(options), wheels_(options.odometry), scan_odometry_(options.scans) {
+  assert(options.source != MotionSource::kAuto);
+}
 
 void MotionEstimator::Observe(const OdometryReading& reading) { wheels_.Observe(reading); }
 

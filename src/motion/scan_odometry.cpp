@@ -36,6 +36,12 @@ void ScanOdometry::Restart() {
 Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
                                                 const Eigen::Matrix3d& prior_information) const {
   Alignment best = map_->Align(points, T_map_guess, prior_information);
+  // The last corrected step done once more, where the wheels say something else.
+  const Pose2 T_map_repeated = T_map_matched_ * last_step_;
+  if (Distance(T_map_repeated, T_map_guess) > options_.repeat_difference_m) {
+    const Alignment other = map_->Align(points, T_map_repeated, prior_information);
+    if (other.inlier_share > best.inlier_share + 0.02) best = other;
+  }
   if (best.inlier_share >= options_.min_inlier_share) return best;
   // Wheels slip most in turns: guesses around the predicted heading, the best refined.
   for (const double turn_deg : {-4.0, 4.0, -8.0, 8.0, -12.0, 12.0}) {
@@ -96,6 +102,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     const Eigen::Matrix3d covariance_in_map =
         (aligned.information / std::max(share, 1e-3) + prior).inverse();
     T_map_robot_ = aligned.T_map_robot;
+    last_step_ = Between(T_map_matched_, T_map_robot_);
     const double c = std::cos(T_map_last.theta);
     const double s = std::sin(T_map_last.theta);
     Eigen::Matrix3d rotation;

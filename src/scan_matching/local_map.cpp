@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace masked_mapper {
 namespace {
@@ -31,10 +32,21 @@ int LocalMap::Index(double x, double y) const {
 }
 
 void LocalMap::Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot) {
+  std::vector<int> touched;
+  Insert(points_in_robot, T_map_robot, touched);
+  UpdateAround(std::move(touched));
+}
+
+void LocalMap::Add(const std::vector<PosedPoints>& scans) {
+  std::vector<int> touched;
+  for (const PosedPoints& scan : scans) Insert(*scan.points_in_robot, scan.T_map_robot, touched);
+  UpdateAround(std::move(touched));
+}
+
+void LocalMap::Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+                      std::vector<int>& touched) {
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
-  const int window = options_.window_cells;
-  std::vector<int> touched;
   for (const pcl::PointXY& point : points_in_robot) {
     const double x = T_map_robot.x + c * point.x - s * point.y;
     const double y = T_map_robot.y + s * point.x + c * point.y;
@@ -59,19 +71,25 @@ void LocalMap::Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot) 
     moments.yy += dy * dy;
     touched.push_back(index);
   }
+  ++scans_;
+}
+
+void LocalMap::UpdateAround(std::vector<int> touched) {
+  const int window = options_.window_cells;
+  const auto sort_unique = [](std::vector<int>& cells) {
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  };
+  sort_unique(touched);
   std::vector<int> changed;
-  changed.reserve(touched.size() * 4);
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  changed.reserve(touched.size() * 9);
   for (const int index : touched) {
     for (int dy = -window; dy <= window; ++dy) {
       for (int dx = -window; dx <= window; ++dx) changed.push_back(index + dy * width_ + dx);
     }
   }
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  sort_unique(changed);
   for (const int index : changed) UpdateDistribution(index % width_, index / width_);
-  ++scans_;
 }
 
 void LocalMap::UpdateDistribution(int column, int row) {
@@ -201,11 +219,16 @@ Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_
     // scan really knows.
     const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
                                      WrapAngle(pose.theta - T_map_robot_guess.theta));
-    const Eigen::Matrix3d total = hessian / options_.covariance_inflation + prior_information;
+    // Wheels slip, and some logs even have their sign wrong: a guess that the points contradict by
+    // many sigmas loses its say (Cauchy), while one that they say nothing against keeps it.
+    const double guess_chi2 = from_guess.dot(prior_information * from_guess);
+    const Eigen::Matrix3d prior =
+        prior_information / (1.0 + guess_chi2 / Square(options_.guess_outlier_sigmas));
+    const Eigen::Matrix3d total = hessian / options_.covariance_inflation + prior;
     const Eigen::LDLT<Eigen::Matrix3d> factor(total);
     if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-9)) return result;
     const Eigen::Vector3d step =
-        -factor.solve(gradient / options_.covariance_inflation + prior_information * from_guess);
+        -factor.solve(gradient / options_.covariance_inflation + prior * from_guess);
     pose = {pose.x + step.x(), pose.y + step.y(), WrapAngle(pose.theta + step.z())};
     const bool is_fine = sigma <= options_.point_sigma_m;
     if (is_fine && step.head<2>().norm() < 5e-4 && std::abs(step.z()) < 1e-4) {

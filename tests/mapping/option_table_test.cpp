@@ -128,7 +128,7 @@ TEST(OptionTable, ChoicesAreSetByName) {
   SetOption("motion.source=scans", options);
   EXPECT_EQ(options.motion.source, MotionSource::kScans);
   EXPECT_EQ(MessageOf("motion.source=wheels"),
-            "--set: motion.source must be odometry, scans or fused, not `wheels`");
+            "--set: motion.source must be auto, odometry, scans or fused, not `wheels`");
 }
 
 TEST(OptionTable, SetsOnlyWhatItNames) {

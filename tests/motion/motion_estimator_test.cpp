@@ -65,6 +65,7 @@ TEST(MotionEstimator, ScansAloneNeedNoWheels) {
 
 TEST(MotionEstimator, ScansWithoutReturnsLeaveTheWheels) {
   MotionOptions options;
+  options.source = MotionSource::kFused;
   MotionEstimator motion(options);
   for (int i = 0; i < 20; ++i) {
     LaserScan scan;

@@ -2,12 +2,12 @@
 // What mapping a log leaves behind; every export is written from this.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
@@ -62,6 +62,7 @@ struct MappingResult {
   std::vector<KeptScan> kept_scans;        ///< in order
   std::vector<ClosureAttempt> attempts;    ///< in order of offering
   LogStatistics log;
+  MotionSource motion_source = MotionSource::kFused;  ///< the one that was used
   StageSeconds seconds;
   std::vector<std::string> warnings;  ///< one line each, for people
 };

@@ -5,6 +5,7 @@
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/loop_closure/candidates.hpp"
 #include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/mapping/submap_options.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
@@ -22,6 +23,13 @@ struct NodeOptions {
   double kept_scan_angle_deg = 10.0;   ///< or turn, whichever comes first
 };
 
+/// When a match is not sure enough to be a closure. A blank corridor matches itself anywhere along
+/// it, and loops of such matches agree with each other. Ours: the paper leaves it to MinScore.
+struct AmbiguityOptions {
+  double max_sigma_m = 0.2;  ///< in the least certain direction
+  double max_sigma_deg = 3.0;
+};
+
 struct Options {
   LogOptions log;
   MotionOptions motion;
@@ -29,6 +37,8 @@ struct Options {
   MaskOptions masks;
   CandidateOptions candidates;
   MatcherOptions matcher;
+  SubmapOptions submaps;
+  AmbiguityOptions ambiguity;
   ValidatorOptions validator;
   OptimizerOptions optimizer;
   GridOptions grid;

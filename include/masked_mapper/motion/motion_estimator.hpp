@@ -12,6 +12,7 @@
 namespace masked_mapper {
 
 enum class MotionSource {
+  kAuto,  ///< fused where scans come often enough, else the wheels; scans where there are no wheels
   kOdometry,  ///< wheels alone, as in the paper
   kScans,     ///< scans alone: wheels are not looked at
   kFused,     ///< wheels guess, scans correct
@@ -24,7 +25,7 @@ struct WheellessOptions {
 };
 
 struct MotionOptions {
-  MotionSource source = MotionSource::kFused;
+  MotionSource source = MotionSource::kAuto;  ///< kAuto is settled before a drive begins
   DeadReckoningOptions odometry;
   ScanOdometryOptions scans;
   WheellessOptions wheelless;

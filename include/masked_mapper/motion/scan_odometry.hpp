@@ -20,6 +20,7 @@ struct ScanOdometryOptions {
   double keyframe_angle_deg = 5.0;    ///< or turn
   int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
   double min_inlier_share = 0.5;      ///< below it other guesses are tried
+  double repeat_difference_m = 0.1;   ///< between wheels and the step before, to try both
   double lost_inlier_share = 0.25;    ///< below it after all guesses the scan is not believed
 };
 
@@ -47,6 +48,7 @@ class ScanOdometry {
   std::optional<Pose2> T_map_keyframe_;  ///< of the scan added last
   UncertainPose2 T_matched_robot_;       ///< by wheels since the scan matched last
   Pose2 T_map_matched_;
+  Pose2 last_step_;                   ///< from the match before last to the last
   std::optional<LocalMap> map_;       ///< matched against
   std::optional<LocalMap> next_map_;  ///< grows until it is large enough to take over
   double inlier_share_ = 1.0;

@@ -25,7 +25,8 @@ struct LocalMapOptions {
   double point_sigma_m = 0.01;  ///< noise of a point, added to every distribution
   double first_sigma_m = 0.15;  ///< the same in the first iteration, halved with each that follows
   double outlier_sigmas = 3.0;  ///< distance at which a point has lost half of its say
-  double line_ratio = 0.1;      ///< smaller over larger variance, below which points form a line
+  double guess_outlier_sigmas = 2.0;  ///< the same for the guess an alignment is held by
+  double line_ratio = 0.1;  ///< smaller over larger variance, below which points form a line
   int max_iterations = 15;
   double covariance_inflation = 2.0;  ///< beams of one wall err together, not each on its own
 };
@@ -43,7 +44,13 @@ class LocalMap {
   /// Points will be kept within `reach_m` of `center_in_map`.
   LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map);
 
+  struct PosedPoints {
+    ScanPoints::ConstPtr points_in_robot;
+    Pose2 T_map_robot;
+  };
   void Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot);
+  /// The same as one after the other, at less cost.
+  void Add(const std::vector<PosedPoints>& scans);
 
   /// Gauss-Newton from `T_map_robot_guess`, held by `prior_information` of the guess (zero: free).
   /// Without a point in reach of the map: the guess, zero information, not converged.
@@ -70,6 +77,9 @@ class LocalMap {
   };
 
   int Index(double x, double y) const;
+  void Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+              std::vector<int>& touched);
+  void UpdateAround(std::vector<int> touched);
   void UpdateDistribution(int column, int row);
   double Step(const ScanPoints& points, const Pose2& T_map_robot, double sigma_m,
               Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const;

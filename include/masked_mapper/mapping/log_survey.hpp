@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A first, cheap pass over a log: what it holds, and what must be known before the first scan is
+// mapped.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/motion/motion_estimator.hpp"
+
+namespace masked_mapper {
+
+struct LogSurvey {
+  std::uint64_t scans = 0;
+  bool has_odometry = false;
+  double median_travel_m = 0.0;  ///< by wheels, from scan to scan, of those that moved
+  double median_turn_rad = 0.0;
+  double median_period_s = 0.0;
+};
+
+/// Throws InputError when the log cannot be read or holds no scan.
+LogSurvey SurveyLog(const std::string& path, const Options& options);
+
+/// What `requested` comes to for this log. Throws InputError when wheels are asked for and the log
+/// has none; `path` is for the message.
+MotionSource SettleMotionSource(const std::string& path, MotionSource requested,
+                                const LogSurvey& survey);
+
+}  // namespace masked_mapper

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a log on disk to a map in memory.
+#pragma once
+
+#include <string>
+
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/mapping/progress_sink.hpp"
+
+namespace masked_mapper {
+
+/// Maps one log. Throws InputError for what is the user's fault: a log that cannot be read or holds
+/// no scan, a mask expression that is none.
+MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
+                     ProgressSink& progress);
+
+}  // namespace masked_mapper

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The masked mapper: Algorithm 1 of the paper, one observation at a time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/mapping/submaps.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+
+namespace masked_mapper {
+
+class MaskedMapper {
+ public:
+  /// `floors` says where the robot was when; it outlives the mapper.
+  /// Throws std::invalid_argument when `mask` is not a mask expression.
+  MaskedMapper(const std::string& mask, const Options& options, const FloorTimeline& floors);
+
+  /// Observations in order of stamps.
+  void Observe(const Observation& observation);
+
+  /// Ends the map: every scan gets its pose. The mapper is spent afterwards.
+  MappingResult Finish();
+
+  const MappingResult& result() const { return result_; }
+
+ private:
+  void ObserveScan(const LaserScan& scan);
+  void ChangeFloor(const FloorInterval& interval, double stamp);
+  NodeId AddNode(double stamp, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
+  void CloseLoops(NodeId new_node);
+  std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  UncertainPose2 RefineMatch(const ClosureAttempt& attempt);
+  void AddValidated(const std::vector<HypothesisId>& validated);
+  void RecordScan(const LaserScan& scan, bool in_transit);
+
+  Options options_;
+  const FloorTimeline& floors_;
+  MotionEstimator motion_;
+  std::unique_ptr<Mask> mask_;
+  JointMatcher matcher_;
+  Submaps submaps_;
+  LoopValidator validator_;
+  MappingResult result_;
+
+  std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered
+  bool in_transit_ = false;
+  std::vector<std::size_t> attempt_of_hypothesis_;
+  double travelled_since_kept_m_ = 0.0;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the robot saw around a node, as a local map in the node's frame: the scans kept shortly
+// before and after it, placed by the motion path. A closure is refined against it below the size of
+// any cell, where a single sparse scan would leave centimetres. Ours; the paper matches single
+// scans.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/mapping/submap_options.hpp"
+#include "masked_mapper/scan_matching/local_map.hpp"
+
+namespace masked_mapper {
+
+/// A match refined; `inlier_share` of the scan's points agree with the submap.
+struct SubmapMatch {
+  UncertainPose2 T_node_robot;
+  double inlier_share = 0.0;
+};
+
+class Submaps {
+ public:
+  /// `result` is the map in the making; it outlives this.
+  Submaps(const SubmapOptions& options, const LocalMapOptions& map_options,
+          const MappingResult& result)
+      : options_(options), map_options_(map_options), result_(result) {}
+
+  /// The pose of a scan in the frame of `node`, from a coarse match. Empty when the scan does not
+  /// fit the node's surroundings.
+  std::optional<SubmapMatch> Refine(NodeId node, const ScanPoints& points_in_robot,
+                                    const UncertainPose2& T_node_robot);
+
+ private:
+  const LocalMap& SubmapOf(NodeId node);
+  LocalMap Build(NodeId node) const;
+
+  SubmapOptions options_;
+  LocalMapOptions map_options_;
+  const MappingResult& result_;
+  std::list<NodeId> recently_used_;  ///< most recent first
+  struct Entry {
+    LocalMap map;
+    std::list<NodeId>::iterator place;
+    bool is_complete = false;  ///< the drive had gone on far enough when it was built
+  };
+  std::map<NodeId, Entry> submaps_;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/map_log.hpp"
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/log_survey.hpp"
+#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper/mapping/stage_timer.hpp"
+
+namespace masked_mapper {
+namespace {
+
+int ThreadCount(int requested) {
+  if (requested > 0) return requested;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// What was skipped or mended, said once.
+void WarnOfTheLog(const std::string& path, const LogStatistics& log, MappingResult& result) {
+  const auto warn = [&](const std::string& text) { result.warnings.push_back(path + ": " + text); };
+  if (log.bad_lines > 0) {
+    warn(std::to_string(log.bad_lines) + " bad lines skipped, the first: " + log.first_bad_line);
+  }
+  if (log.truncated) warn("the file is cut off; what came before the cut was used");
+  if (log.stamp_jumps > 0) {
+    warn(std::to_string(log.stamp_jumps) + " stamps that step backwards or wrap were mended");
+  }
+  if (log.empty_scans > 0) {
+    warn(std::to_string(log.empty_scans) + " scans without a single return");
+  }
+}
+
+}  // namespace
+
+MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
+                     ProgressSink& progress) {
+  Options settled = options;
+  settled.matcher.threads = ThreadCount(options.threads);
+  double survey_seconds = 0.0;
+  {
+    const StageTimer timer(survey_seconds);
+    progress.Stage("reading");
+    const LogSurvey survey = SurveyLog(path, options);
+    settled.motion.source = SettleMotionSource(path, options.motion.source, survey);
+  }
+  const FloorTimeline floors;
+  std::unique_ptr<MaskedMapper> mapper;
+  try {
+    mapper = std::make_unique<MaskedMapper>(mask, settled, floors);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what());
+  }
+
+  progress.Stage("mapping");
+  const std::unique_ptr<LogReader> log = OpenLog(path, options.log);
+  double read_seconds = survey_seconds;
+  std::uint64_t scans = 0;
+  while (true) {
+    std::optional<Observation> observation;
+    {
+      const StageTimer timer(read_seconds);
+      observation = log->Next();
+    }
+    if (!observation) break;
+    mapper->Observe(*observation);
+    if (std::holds_alternative<LaserScan>(*observation)) {
+      progress.Progress(log->Progress(), ++scans);
+    }
+  }
+  MappingResult result = mapper->Finish();
+  result.log = log->Statistics();
+  result.seconds.read = read_seconds;
+  result.motion_source = settled.motion.source;
+  WarnOfTheLog(path, result.log, result);
+  for (const std::string& warning : result.warnings) progress.Warn(warning);
+  return result;
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Algorithm 1, to be read beside the paper: ObserveScan is its loop, CloseLoops its body.
+#include "masked_mapper/mapping/masked_mapper.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <utility>
+
+#include "masked_mapper/mapping/stage_timer.hpp"
+#include "masked_mapper/mapping/trajectory.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Whether a match leaves its least certain direction open.
+bool IsAmbiguous(const Eigen::Matrix3d& covariance, const AmbiguityOptions& options) {
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+                             covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly)
+                             .eigenvalues()
+                             .maxCoeff();
+  return std::sqrt(largest) > options.max_sigma_m ||
+         std::sqrt(covariance(2, 2)) > DegToRad(options.max_sigma_deg);
+}
+
+}  // namespace
+
+MaskedMapper::MaskedMapper(const std::string& mask, const Options& options,
+                           const FloorTimeline& floors)
+    : options_(options),
+      floors_(floors),
+      motion_(options.motion),
+      mask_(MakeMask(mask, options.masks)),
+      matcher_(options.matcher),
+      submaps_(options.submaps, options.motion.scans.map, result_),
+      validator_(options.validator) {
+  for (const FloorLevel& level : floors.levels) {
+    result_.graph.AddFloor(
+        {level.label, level.elevation, level.elevation_sigma, level.elevation_measured});
+  }
+}
+
+void MaskedMapper::Observe(const Observation& observation) {
+  if (const auto* odometry = std::get_if<OdometryReading>(&observation)) {
+    const StageTimer timer(result_.seconds.motion);
+    motion_.Observe(*odometry);
+  } else if (const auto* scan = std::get_if<LaserScan>(&observation)) {
+    ObserveScan(*scan);
+  }
+}
+
+void MaskedMapper::ObserveScan(const LaserScan& scan) {
+  {
+    const StageTimer timer(result_.seconds.motion);
+    motion_.Observe(scan);
+  }
+  const FloorInterval& interval = floors_.At(scan.stamp);
+  if (result_.graph.nodes().empty()) {
+    // Node 0 is a scan-matching node at the start (III-B); a drive that starts in transit has none.
+    in_transit_ = interval.in_transit;
+    AddNode(scan.stamp, in_transit_ ? nullptr : PointsInRobot(scan), EdgeKind::kOdometry);
+  } else {
+    ChangeFloor(interval, scan.stamp);
+  }
+  if (!in_transit_) {
+    {
+      const StageTimer timer(result_.seconds.mask);
+      mask_->Observe({scan, motion_.T_odom_robot()});
+    }
+    const Pose2& T_odom_robot = motion_.T_odom_robot();
+    const auto distance_from = [&](NodeId node) {
+      return Distance(result_.graph.nodes()[static_cast<std::size_t>(node)].T_odom_robot,
+                      T_odom_robot);
+    };
+    const auto last_node = static_cast<NodeId>(result_.graph.nodes().size() - 1);
+    const bool far_from_scan_node =
+        !last_scan_node_ || distance_from(*last_scan_node_) > options_.nodes.min_edge_length_m;
+    if (far_from_scan_node && mask_->Fires()) {
+      CloseLoops(AddNode(scan.stamp, PointsInRobot(scan), EdgeKind::kOdometry));
+    } else if (distance_from(last_node) > options_.nodes.max_edge_length_m) {
+      AddNode(scan.stamp, nullptr, EdgeKind::kOdometry);
+    }
+  }
+  RecordScan(scan, interval.in_transit);
+}
+
+// Exit on the old floor, entry on the new one, both odometry-only (III-B): what lies between them
+// is one edge, and the mask starts afresh.
+void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
+  const FloorId floor = result_.graph.nodes().back().floor;
+  const bool other_floor = static_cast<FloorId>(interval.level) != floor;
+  if (!in_transit_ && (interval.in_transit || other_floor)) {
+    AddNode(stamp, nullptr, EdgeKind::kOdometry);
+    in_transit_ = true;
+  }
+  if (in_transit_ && !interval.in_transit) {
+    AddNode(stamp, nullptr, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
+    in_transit_ = false;
+    last_scan_node_.reset();
+    mask_->Restart();
+    motion_.RestartScans();
+  }
+}
+
+NodeId MaskedMapper::AddNode(double stamp, ScanPoints::ConstPtr points_in_robot, EdgeKind kind) {
+  PoseGraph& graph = result_.graph;
+  Node node;
+  node.stamp = stamp;
+  node.floor = static_cast<FloorId>(floors_.At(stamp).level);
+  node.T_odom_robot = motion_.T_odom_robot();
+  node.points_in_robot = std::move(points_in_robot);
+  const bool has_scan = node.HasScan();
+  const bool is_first = graph.nodes().empty();
+  if (!is_first) {
+    node.T_world_robot = graph.nodes().back().T_world_robot * motion_.T_node_robot().mean;
+  }
+  const NodeId id = graph.AddNode(std::move(node));
+  if (!is_first) graph.AddEdge({id - 1, id, motion_.T_node_robot(), kind});
+  motion_.StartNode();
+  if (has_scan) {
+    last_scan_node_ = id;
+    mask_->OnNode();
+  }
+  return id;
+}
+
+void MaskedMapper::CloseLoops(NodeId new_node) {
+  std::vector<Candidate> candidates;
+  {
+    const StageTimer timer(result_.seconds.projection);
+    candidates = FindCandidates(result_.graph, new_node,
+                                DijkstraProjection(result_.graph, new_node), options_.candidates);
+  }
+  const std::vector<Hypothesis> matches = MatchScans(new_node, candidates);
+  std::vector<HypothesisId> validated;
+  {
+    const StageTimer timer(result_.seconds.validation);
+    validated = validator_.Judge(result_.graph, matches);
+  }
+  if (validated.empty()) return;
+  AddValidated(validated);
+  const StageTimer timer(result_.seconds.optimisation);
+  Optimize(options_.optimizer, result_.graph);
+}
+
+std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
+                                                 const std::vector<Candidate>& candidates) {
+  const StageTimer timer(result_.seconds.matching);
+  const std::vector<Node>& nodes = result_.graph.nodes();
+  std::vector<MatchPair> pairs;
+  for (const Candidate& candidate : candidates) {
+    const Node& old_node = nodes[static_cast<std::size_t>(candidate.node)];
+    pairs.push_back({candidate.node, old_node.points_in_robot,
+                     nodes[static_cast<std::size_t>(new_node)].points_in_robot,
+                     Inverse(candidate.T_new_node)});
+  }
+  const std::vector<MatchResult> results = matcher_.Match(pairs);
+  std::vector<Hypothesis> matches;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    ClosureAttempt attempt;
+    attempt.a = new_node;
+    attempt.b = candidates[i].node;
+    attempt.T_a_b = Inverse(results[i].T_reference_query);
+    attempt.score = results[i].score;
+    attempt.mahalanobis = candidates[i].mahalanobis;
+    if (results[i].outcome != MatchOutcome::kMatched) {
+      attempt.reason = "score below the minimum";
+    } else {
+      attempt.state = ClosureState::kHypothesis;
+      if (options_.motion.source != MotionSource::kOdometry) attempt.T_a_b = RefineMatch(attempt);
+      if (IsAmbiguous(attempt.T_a_b.covariance, options_.ambiguity)) {
+        attempt.reason = "the place looks alike along a line";
+      } else {
+        attempt.reason = "too few votes";
+        attempt_of_hypothesis_.push_back(result_.attempts.size());
+        Hypothesis hypothesis;
+        hypothesis.a = attempt.a;
+        hypothesis.b = attempt.b;
+        hypothesis.T_a_b = attempt.T_a_b;
+        matches.push_back(hypothesis);
+      }
+    }
+    result_.attempts.push_back(std::move(attempt));
+  }
+  return matches;
+}
+
+UncertainPose2 MaskedMapper::RefineMatch(const ClosureAttempt& attempt) {
+  const Node& a = result_.graph.nodes()[static_cast<std::size_t>(attempt.a)];
+  const std::optional<SubmapMatch> refined =
+      submaps_.Refine(attempt.b, *a.points_in_robot, Inverse(attempt.T_a_b));
+  return refined ? Inverse(refined->T_node_robot) : attempt.T_a_b;
+}
+
+void MaskedMapper::AddValidated(const std::vector<HypothesisId>& validated) {
+  for (const HypothesisId id : validated) {
+    const Hypothesis& hypothesis = validator_.hypotheses()[static_cast<std::size_t>(id)];
+    result_.graph.AddEdge({hypothesis.a, hypothesis.b, hypothesis.T_a_b, EdgeKind::kClosure});
+    ClosureAttempt& attempt =
+        result_.attempts[attempt_of_hypothesis_[static_cast<std::size_t>(id)]];
+    attempt.state = ClosureState::kValidated;
+    attempt.reason = "enough votes";
+  }
+}
+
+void MaskedMapper::RecordScan(const LaserScan& scan, bool in_transit) {
+  const Pose2& T_odom_robot = motion_.T_odom_robot();
+  const bool is_first = result_.trajectory.empty();
+  if (!is_first) {
+    travelled_since_kept_m_ += Distance(result_.trajectory.back().T_odom_robot, T_odom_robot);
+  }
+  TrajectoryPose pose;
+  pose.stamp = scan.stamp;
+  pose.node_before = static_cast<NodeId>(result_.graph.nodes().size() - 1);
+  pose.floor = result_.graph.nodes().back().floor;
+  pose.in_transit = in_transit;
+  pose.T_odom_robot = T_odom_robot;
+  result_.trajectory.push_back(pose);
+  if (in_transit) return;
+  const bool turned =
+      !result_.kept_scans.empty() &&
+      std::abs(WrapAngle(
+          T_odom_robot.theta -
+          result_.trajectory[result_.kept_scans.back().trajectory_index].T_odom_robot.theta)) >=
+          DegToRad(options_.nodes.kept_scan_angle_deg);
+  if (result_.kept_scans.empty() || turned ||
+      travelled_since_kept_m_ >= options_.nodes.kept_scan_distance_m) {
+    result_.kept_scans.push_back({result_.trajectory.size() - 1, scan});
+    travelled_since_kept_m_ = 0.0;
+  }
+}
+
+MappingResult MaskedMapper::Finish() {
+  const std::vector<Hypothesis>& hypotheses = validator_.hypotheses();
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    result_.attempts[attempt_of_hypothesis_[i]].votes = hypotheses[i].votes;
+  }
+  BendTrajectory(result_.graph, result_.trajectory);
+  return std::move(result_);
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/submaps.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace masked_mapper {
+
+LocalMap Submaps::Build(NodeId node) const {
+  const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
+  LocalMap map(map_options_, Eigen::Vector2d::Zero());
+  std::vector<LocalMap::PosedPoints> scans;
+  const std::vector<KeptScan>& kept = result_.kept_scans;
+  const auto pose_of = [&](const KeptScan& scan) -> const TrajectoryPose& {
+    return result_.trajectory[scan.trajectory_index];
+  };
+  const auto first_after =
+      std::lower_bound(kept.begin(), kept.end(), center.stamp,
+                       [](const KeptScan& scan, double stamp) { return scan.scan.stamp < stamp; });
+  // Outwards in both directions until the way travelled is long enough; another floor ends it.
+  const auto add = [&](auto scan, auto end, auto next) {
+    double travelled = 0.0;
+    Pose2 T_odom_before = center.T_odom_robot;
+    for (; scan != end; scan = next(scan)) {
+      const TrajectoryPose& pose = pose_of(*scan);
+      travelled += Distance(T_odom_before, pose.T_odom_robot);
+      if (travelled > options_.half_length_m || pose.floor != center.floor) break;
+      T_odom_before = pose.T_odom_robot;
+      scans.push_back({PointsInRobot(scan->scan), Between(center.T_odom_robot, pose.T_odom_robot)});
+    }
+  };
+  add(first_after, kept.end(), [](auto scan) { return scan + 1; });
+  add(std::make_reverse_iterator(first_after), kept.rend(), [](auto scan) { return scan + 1; });
+  map.Add(scans);
+  return map;
+}
+
+const LocalMap& Submaps::SubmapOf(NodeId node) {
+  const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
+  const auto found = submaps_.find(node);
+  if (found != submaps_.end()) {
+    if (found->second.is_complete) {
+      recently_used_.splice(recently_used_.begin(), recently_used_, found->second.place);
+      return found->second.map;
+    }
+    recently_used_.erase(found->second.place);
+    submaps_.erase(found);
+  }
+  while (submaps_.size() >= std::max<std::size_t>(1, options_.cached)) {
+    submaps_.erase(recently_used_.back());
+    recently_used_.pop_back();
+  }
+  recently_used_.push_front(node);
+  const bool is_complete = Distance(center.T_odom_robot, result_.trajectory.back().T_odom_robot) >
+                               options_.half_length_m ||
+                           center.floor != result_.trajectory.back().floor;
+  return submaps_.emplace(node, Entry{Build(node), recently_used_.begin(), is_complete})
+      .first->second.map;
+}
+
+std::optional<SubmapMatch> Submaps::Refine(NodeId node, const ScanPoints& points_in_robot,
+                                           const UncertainPose2& T_node_robot) {
+  Eigen::Matrix3d prior_covariance = T_node_robot.covariance;
+  prior_covariance.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);
+  const Eigen::Matrix3d prior = options_.prior_weight * prior_covariance.inverse();
+  const Alignment aligned = SubmapOf(node).Align(points_in_robot, T_node_robot.mean, prior);
+  if (aligned.inlier_share < options_.min_inlier_share ||
+      Distance(aligned.T_map_robot, T_node_robot.mean) > options_.max_correction_m ||
+      std::abs(WrapAngle(aligned.T_map_robot.theta - T_node_robot.mean.theta)) >
+          DegToRad(options_.max_correction_deg)) {
+    return std::nullopt;
+  }
+  SubmapMatch refined;
+  refined.inlier_share = aligned.inlier_share;
+  refined.T_node_robot.mean = aligned.T_map_robot;
+  refined.T_node_robot.covariance = (aligned.information + prior).inverse();
+  const double floor_m = options_.sigma_floor_m;
+  const double floor_rad = DegToRad(options_.sigma_floor_deg);
+  refined.T_node_robot.covariance.diagonal() +=
+      Eigen::Vector3d(floor_m * floor_m, floor_m * floor_m, floor_rad * floor_rad);
+  return refined;
+}
+
+}  // namespace masked_mapper

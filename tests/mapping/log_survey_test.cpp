@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/log_survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/log/log_writer.hpp"
+
+namespace masked_mapper {
+namespace {
+
+std::string TemporaryLog(const std::string& name) {
+  return (std::filesystem::path(testing::TempDir()) / name).string();
+}
+
+LaserScan ScanAt(double stamp, double x) {
+  LaserScan scan;
+  scan.stamp = stamp;
+  scan.first_angle = -0.5 * kPi;
+  scan.angle_step = kPi / 180.0;
+  scan.max_range = 30.0F;
+  scan.ranges.assign(181, 4.0F);
+  scan.T_odom_robot = Pose2{x, 0.0, 0.0};
+  return scan;
+}
+
+TEST(SurveyLog, CountsScansAndTheirSteps) {
+  const std::string path = TemporaryLog("survey.log");
+  LogWriter writer(path);
+  for (int i = 0; i < 20; ++i) writer.Write(ScanAt(0.2 * i, 0.1 * i));
+  writer.Close();
+  const LogSurvey survey = SurveyLog(path, {});
+  EXPECT_EQ(survey.scans, 20U);
+  EXPECT_TRUE(survey.has_odometry);
+  EXPECT_NEAR(survey.median_travel_m, 0.1, 1e-3);
+  EXPECT_NEAR(survey.median_period_s, 0.2, 1e-3);
+  EXPECT_EQ(SettleMotionSource(path, MotionSource::kAuto, survey), MotionSource::kFused);
+}
+
+TEST(SurveyLog, ScansFarApartAreLeftToTheWheels) {
+  LogSurvey survey;
+  survey.has_odometry = true;
+  survey.median_travel_m = 0.8;
+  EXPECT_EQ(SettleMotionSource("x", MotionSource::kAuto, survey), MotionSource::kOdometry);
+  EXPECT_EQ(SettleMotionSource("x", MotionSource::kFused, survey), MotionSource::kFused);
+  survey.has_odometry = false;
+  EXPECT_EQ(SettleMotionSource("x", MotionSource::kAuto, survey), MotionSource::kScans);
+  EXPECT_THROW(SettleMotionSource("x", MotionSource::kOdometry, survey), InputError);
+}
+
+TEST(SurveyLog, WithoutAScanThereIsNothingToMap) {
+  const std::string path = TemporaryLog("no_scan.log");
+  std::ofstream(path) << "# CARMEN\nODOM 0 0 0 0 0 0 1.0 host 1.0\n";
+  EXPECT_THROW(SurveyLog(path, {}), InputError);
+}
+
+}  // namespace
+}  // namespace masked_mapper

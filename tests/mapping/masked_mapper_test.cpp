@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/masked_mapper.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mapping/ring_drive.hpp"
+
+namespace masked_mapper {
+namespace {
+
+Options OptionsFor(MotionSource source) {
+  Options options;
+  options.motion.source = source;
+  return options;
+}
+
+MappingResult Map(const RingDrive& drive, const std::string& mask, const Options& options,
+                  const FloorTimeline& floors = {}) {
+  MaskedMapper mapper(mask, options, floors);
+  for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
+  return mapper.Finish();
+}
+
+double LargestError(const RingDrive& drive, const MappingResult& map) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < drive.truth.size(); ++i) {
+    worst = std::max(worst, Distance(drive.truth[i], map.trajectory[i].T_world_robot));
+  }
+  return worst;
+}
+
+std::size_t Validated(const MappingResult& map) {
+  std::size_t count = 0;
+  for (const ClosureAttempt& attempt : map.attempts) {
+    count += attempt.state == ClosureState::kValidated;
+  }
+  return count;
+}
+
+TEST(MaskedMapper, NeverIsDeadReckoning) {
+  const RingDrive drive(1.0, 0.3);
+  const MappingResult map = Map(drive, "never", OptionsFor(MotionSource::kOdometry));
+  EXPECT_TRUE(map.attempts.empty());
+  ASSERT_EQ(map.trajectory.size(), drive.scans.size());
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    EXPECT_NEAR(Distance(map.trajectory[i].T_world_robot, *drive.scans[i].T_odom_robot), 0.0, 1e-9);
+  }
+}
+
+TEST(MaskedMapper, NodesKeepTheirDistances) {
+  const RingDrive drive(1.0, 0.3);
+  const Options options = OptionsFor(MotionSource::kOdometry);
+  for (const char* mask : {"always", "openings", "never"}) {
+    const MappingResult map = Map(drive, mask, options);
+    const std::vector<Node>& nodes = map.graph.nodes();
+    EXPECT_TRUE(nodes.front().HasScan()) << "node 0 is a scan node";
+    const Node* last_scan_node = nullptr;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (i > 0) {
+        // One step of the drive beyond the limit at the most.
+        EXPECT_LE(Distance(nodes[i - 1].T_odom_robot, nodes[i].T_odom_robot),
+                  options.nodes.max_edge_length_m + 0.21);
+      }
+      if (!nodes[i].HasScan()) continue;
+      if (last_scan_node != nullptr) {
+        EXPECT_GT(Distance(last_scan_node->T_odom_robot, nodes[i].T_odom_robot),
+                  options.nodes.min_edge_length_m);
+      }
+      last_scan_node = &nodes[i];
+    }
+  }
+}
+
+TEST(MaskedMapper, ClosuresBringADriftingPathHome) {
+  const RingDrive drive(2.0, 0.15);
+  const double drifted =
+      LargestError(drive, Map(drive, "never", OptionsFor(MotionSource::kOdometry)));
+  EXPECT_GT(drifted, 3.0) << "m, or the test shows nothing";
+  for (const char* mask : {"always", "any(openings,eccentricity)"}) {
+    const MappingResult map = Map(drive, mask, OptionsFor(MotionSource::kOdometry));
+    EXPECT_GT(Validated(map), 5U) << mask;
+    EXPECT_LT(LargestError(drive, map), 0.25 * drifted) << mask << ", m";
+  }
+}
+
+TEST(MaskedMapper, ScansAndClosuresTogetherAreGoodToCentimetres) {
+  const RingDrive drive(2.0, 0.3);
+  const MappingResult map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
+  EXPECT_LT(LargestError(drive, map), 0.25) << "m";
+}
+
+TEST(MaskedMapper, EveryClosureOfTheRingIsTrue) {
+  const RingDrive drive(2.0, 0.15);
+  const MappingResult map = Map(drive, "always", OptionsFor(MotionSource::kOdometry));
+  const auto truth_at = [&](NodeId id) {
+    const double stamp = map.graph.nodes()[static_cast<std::size_t>(id)].stamp;
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      if (drive.scans[i].stamp == stamp) return drive.truth[i];
+    }
+    ADD_FAILURE() << "a node without a scan's stamp";
+    return Pose2{};
+  };
+  for (const ClosureAttempt& attempt : map.attempts) {
+    if (attempt.state != ClosureState::kValidated) continue;
+    const Pose2 left =
+        Between(Between(truth_at(attempt.a), truth_at(attempt.b)), attempt.T_a_b.mean);
+    EXPECT_LT(std::hypot(left.x, left.y), 0.5) << "m";
+    EXPECT_LT(RadToDeg(std::abs(left.theta)), 5.0) << "deg";
+  }
+}
+
+TEST(MaskedMapper, AnyNumberOfThreadsGivesTheSameMap) {
+  const RingDrive drive(1.25, 0.15);
+  Options options = OptionsFor(MotionSource::kFused);
+  options.matcher.threads = 1;
+  const MappingResult one = Map(drive, "always", options);
+  options.matcher.threads = 2;
+  const MappingResult two = Map(drive, "always", options);
+  ASSERT_EQ(one.trajectory.size(), two.trajectory.size());
+  for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
+    EXPECT_EQ(one.trajectory[i].T_world_robot.x, two.trajectory[i].T_world_robot.x);
+    EXPECT_EQ(one.trajectory[i].T_world_robot.theta, two.trajectory[i].T_world_robot.theta);
+  }
+}
+
+TEST(MaskedMapper, ChangeOfFloorIsAPairOfOdometryNodesAndAnEdge) {
+  const RingDrive drive(1.0, 0.0);
+  FloorTimeline floors;
+  floors.levels.resize(2);
+  const double ride = drive.scans[drive.scans.size() / 2].stamp;
+  floors.intervals = {{0.0, 0, false}, {ride, 0, true}, {ride + 3.0, 1, false}};
+  const MappingResult map = Map(drive, "always", OptionsFor(MotionSource::kOdometry), floors);
+  int changes = 0;
+  for (const Edge& edge : map.graph.edges()) {
+    const Node& from = map.graph.nodes()[static_cast<std::size_t>(edge.from)];
+    const Node& to = map.graph.nodes()[static_cast<std::size_t>(edge.to)];
+    if (edge.kind != EdgeKind::kFloorChange) {
+      EXPECT_EQ(from.floor, to.floor) << "only floor changes cross floors";
+      continue;
+    }
+    ++changes;
+    EXPECT_FALSE(from.HasScan());
+    EXPECT_FALSE(to.HasScan());
+    EXPECT_EQ(from.floor, 0);
+    EXPECT_EQ(to.floor, 1);
+  }
+  EXPECT_EQ(changes, 1);
+  for (const KeptScan& kept : map.kept_scans) {
+    EXPECT_FALSE(kept.scan.stamp >= ride && kept.scan.stamp < ride + 3.0)
+        << "scans in transit are not rendered";
+  }
+  for (const ClosureAttempt& attempt : map.attempts) {
+    EXPECT_EQ(map.graph.nodes()[static_cast<std::size_t>(attempt.a)].floor,
+              map.graph.nodes()[static_cast<std::size_t>(attempt.b)].floor);
+  }
+}
+
+TEST(MaskedMapper, OneScanIsAMap) {
+  const RingDrive drive(0.0, 0.0);
+  ASSERT_EQ(drive.scans.size(), 1U);
+  const MappingResult map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
+  EXPECT_EQ(map.graph.nodes().size(), 1U);
+  EXPECT_EQ(map.trajectory.size(), 1U);
+  const FloorTimeline floors;
+  EXPECT_THROW(MaskedMapper("nonsense", OptionsFor(MotionSource::kFused), floors),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace masked_mapper

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/scan_odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scan_matching/box_scene.hpp"
+
+namespace masked_mapper {
+namespace {
+
+UncertainPose2 Wheels(const Pose2& motion, double sigma_m, double sigma_deg) {
+  UncertainPose2 step;
+  step.mean = motion;
+  step.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m,
+      DegToRad(sigma_deg) * DegToRad(sigma_deg);
+  return step;
+}
+
+TEST(ScanOdometry, RecoversMotionThatTheWheelsGetWrong) {
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  ScanOdometry odometry({});
+  Pose2 truth{2.0, 2.0, 0.3};
+  const Pose2 start = truth;
+  Pose2 path;
+  for (int i = 0; i < 100; ++i) {
+    const Pose2 step{0.07, 0.0, DegToRad(3.0)};
+    if (i > 0) truth = truth * step;
+    // Wheels that lose a tenth of the way, turn a degree too far, and shake.
+    const Pose2 wheels = i == 0 ? Pose2{}
+                                : Pose2{0.063 + 0.01 * normal(random), 0.01 * normal(random),
+                                        DegToRad(4.0 + 0.5 * normal(random))};
+    path = path *
+           odometry.Observe(room.Scan(truth, 361, 270.0, &random), Wheels(wheels, 0.02, 1.5)).mean;
+  }
+  const Pose2 expected = Between(start, truth);
+  EXPECT_LT(Distance(path, expected), 0.03) << "m";
+  EXPECT_LT(RadToDeg(std::abs(WrapAngle(path.theta - expected.theta))), 0.5) << "deg";
+}
+
+TEST(ScanOdometry, HoldsStillWhenTheRobotDoes) {
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(4);
+  ScanOdometry odometry({});
+  Pose2 path;
+  for (int i = 0; i < 500; ++i) {
+    const UncertainPose2 step =
+        odometry.Observe(room.Scan({3.0, 3.0, 1.0}, 361, 270.0, &random), UncertainPose2{});
+    path = path * step.mean;
+    EXPECT_EQ(step.covariance.norm(), 0.0);
+  }
+  EXPECT_EQ(path.x, 0.0);
+  EXPECT_EQ(path.theta, 0.0);
+}
+
+TEST(ScanOdometry, BlankCorridorIsNeitherShortenedNorCalledKnown) {
+  const BoxScene corridor = BlankCorridor();
+  std::mt19937 random(9);
+  ScanOdometry odometry({});
+  UncertainPose2 path;
+  Pose2 truth{0.0, 0.2, 0.0};
+  for (int i = 0; i < 150; ++i) {
+    if (i > 0) truth.x += 0.1;
+    // Wheels that are right about the way and drift in heading by half a degree a step.
+    const Pose2 wheels = i == 0 ? Pose2{} : Pose2{0.1, 0.0, DegToRad(0.5)};
+    path = path *
+           odometry.Observe(corridor.Scan(truth, 361, 270.0, &random), Wheels(wheels, 0.02, 1.0));
+  }
+  EXPECT_NEAR(path.mean.x, 14.9, 0.15) << "m along";
+  EXPECT_NEAR(path.mean.y, 0.0, 0.1) << "m across";
+  EXPECT_NEAR(RadToDeg(path.mean.theta), 0.0, 0.5) << "deg";
+  // Along: the wheels' own random walk, 0.02 m a step.
+  EXPECT_GT(std::sqrt(path.covariance(0, 0)), 0.5 * 0.02 * std::sqrt(149.0));
+  EXPECT_LT(std::sqrt(path.covariance(0, 0)), 2.0 * 0.02 * std::sqrt(149.0));
+}
+
+TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
+  const BoxScene room = FurnishedRoom();
+  BoxScene other;
+  other.AddBox(-3.0, -20.0, 1.3, 15.0);
+  std::mt19937 random(6);
+  ScanOdometry odometry({});
+  for (int i = 0; i < 30; ++i) {
+    odometry.Observe(room.Scan({2.0 + 0.1 * i, 3.0, 0.0}, 361, 270.0, &random),
+                     Wheels({i > 0 ? 0.1 : 0.0, 0.0, 0.0}, 0.02, 1.0));
+  }
+  odometry.Restart();
+  Pose2 path;
+  for (int i = 0; i < 30; ++i) {
+    path = path * odometry
+                      .Observe(other.Scan({0.0, 0.1 * i, 1.57}, 361, 270.0, &random),
+                               Wheels({i > 0 ? 0.1 : 0.0, 0.0, 0.0}, 0.02, 1.0))
+                      .mean;
+  }
+  EXPECT_NEAR(path.x, 2.9, 0.05) << "m";
+  EXPECT_NEAR(path.y, 0.0, 0.05) << "m";
+}
+
+}  // namespace
+}  // namespace masked_mapper
