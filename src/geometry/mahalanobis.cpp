@@ -6,12 +6,19 @@
 #include <limits>
 
 namespace masked_mapper {
+namespace {
+
+/// A square that rounding made negative counts as zero; NaN stays NaN, so that no limit is ever
+/// passed by a distance that is not a number.
+double RootOfSquare(double square) { return square < 0.0 ? 0.0 : std::sqrt(square); }
+
+}  // namespace
 
 double MahalanobisDistance(const Eigen::Vector2d& displacement, const Eigen::Matrix2d& covariance,
                            double range_m) {
   const Eigen::Matrix2d spread = covariance + range_m * range_m * Eigen::Matrix2d::Identity();
   const Eigen::LDLT<Eigen::Matrix2d> factor(spread);
-  return std::sqrt(std::max(0.0, displacement.dot(factor.solve(displacement))));
+  return RootOfSquare(displacement.dot(factor.solve(displacement)));
 }
 
 double MahalanobisFromIdentity(const UncertainPose2& loop) {
@@ -19,7 +26,7 @@ double MahalanobisFromIdentity(const UncertainPose2& loop) {
   if (error.isZero(0.0)) return 0.0;
   const Eigen::LLT<Eigen::Matrix3d> factor(loop.covariance);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  return std::sqrt(std::max(0.0, error.dot(factor.solve(error))));
+  return RootOfSquare(error.dot(factor.solve(error)));
 }
 
 }  // namespace masked_mapper

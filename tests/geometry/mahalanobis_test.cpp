@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "geometry/random_pose.hpp"
 
@@ -39,6 +40,14 @@ TEST(Mahalanobis, FromIdentityMatchesTheExplicitInverse) {
 TEST(Mahalanobis, FromIdentityOfCertainLoops) {
   EXPECT_EQ(MahalanobisFromIdentity(UncertainPose2{}), 0.0);
   EXPECT_TRUE(std::isinf(MahalanobisFromIdentity({{0.1, 0.0, 0.0}, Eigen::Matrix3d::Zero()})));
+}
+
+TEST(Mahalanobis, WhatIsNotANumberIsNotNear) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(MahalanobisDistance({nan, 0.0}, Eigen::Matrix2d::Identity(), 2.0) < 5.0);
+  EXPECT_FALSE(MahalanobisDistance({1.0, 0.0}, Eigen::Matrix2d::Constant(nan), 2.0) < 5.0);
+  EXPECT_FALSE(MahalanobisFromIdentity({{nan, 0.0, 0.0}, Eigen::Matrix3d::Identity()}) < 2.0);
+  EXPECT_FALSE(MahalanobisFromIdentity({{0.1, 0.0, 0.0}, Eigen::Matrix3d::Constant(nan)}) < 2.0);
 }
 
 }  // namespace
