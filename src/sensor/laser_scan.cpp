@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "masked_mapper/sensor/beam_sweep.hpp"
+
 namespace masked_mapper {
 
 bool LaserScan::IsFullCircle() const {
@@ -15,13 +17,14 @@ bool LaserScan::IsFullCircle() const {
 ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan) {
   ScanPoints::Ptr points(new ScanPoints);
   points->reserve(scan.size());
-  for (std::size_t beam = 0; beam < scan.size(); ++beam) {
+  auto direction = BeamSweep::InRobot(scan);
+  for (std::size_t beam = 0; beam < scan.size(); ++beam, direction.Advance()) {
     if (!scan.IsHit(beam)) continue;
-    const double angle = scan.T_robot_laser.theta + scan.Angle(beam);
-    const double range = scan.ranges[beam];
+    const Eigen::Vector2d point_in_robot =
+        scan.T_robot_laser.Translation() + scan.ranges[beam] * direction.Current();
     pcl::PointXY point;
-    point.x = static_cast<float>(scan.T_robot_laser.x + range * std::cos(angle));
-    point.y = static_cast<float>(scan.T_robot_laser.y + range * std::sin(angle));
+    point.x = static_cast<float>(point_in_robot.x());
+    point.y = static_cast<float>(point_in_robot.y());
     points->push_back(point);
   }
   return points;
