@@ -8,8 +8,11 @@
 #include <ceres/solver.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -70,11 +73,27 @@ std::vector<PoseBlock> PosesOf(const PoseGraph& graph) {
   return poses;
 }
 
-double Chi2(const PoseGraph& graph, const std::deque<EdgeCost>& costs,
+// What a solve takes in: edges, and the nodes at their ends that it must not move.
+struct Part {
+  std::vector<EdgeId> edges;
+  std::vector<NodeId> fixed;
+};
+
+using Costs = std::deque<EdgeCost>;  // one for each edge of a part; Ceres holds pointers to them
+
+Costs CostsOf(const PoseGraph& graph, const Part& part) {
+  Costs costs;
+  for (const EdgeId id : part.edges) {
+    costs.emplace_back(graph.edges()[static_cast<std::size_t>(id)].T_from_to);
+  }
+  return costs;
+}
+
+double Chi2(const PoseGraph& graph, const Part& part, const Costs& costs,
             const std::vector<PoseBlock>& poses) {
   double chi2 = 0.0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    const Edge& edge = graph.edges()[i];
+    const Edge& edge = graph.edges()[static_cast<std::size_t>(part.edges[i])];
     const double* const ends[2] = {poses[static_cast<std::size_t>(edge.from)].data(),
                                    poses[static_cast<std::size_t>(edge.to)].data()};
     double residual[3];
@@ -129,8 +148,7 @@ struct Solution {
 };
 
 Solution SolveFrom(std::vector<PoseBlock> start, const OptimizerOptions& options,
-                   const PoseGraph& graph, std::deque<EdgeCost>& costs,
-                   const std::vector<NodeId>& gauge) {
+                   const PoseGraph& graph, const Part& part, Costs& costs) {
   const QuietCeres quiet;
   Solution solution{std::move(start)};
   ceres::Problem::Options ownership;
@@ -140,19 +158,26 @@ Solution SolveFrom(std::vector<PoseBlock> start, const OptimizerOptions& options
   const auto block = [&](NodeId node) {
     return solution.poses[static_cast<std::size_t>(node)].data();
   };
-  // In the order of ids, so that the elimination order is the same every time.
-  for (PoseBlock& pose : solution.poses) problem.AddParameterBlock(pose.data(), 3);
+  // Edges come in the order of ids, so that the elimination order is the same every time.
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    const Edge& edge = graph.edges()[i];
+    const Edge& edge = graph.edges()[static_cast<std::size_t>(part.edges[i])];
     problem.AddResidualBlock(&costs[i], nullptr, block(edge.from), block(edge.to));
   }
-  for (const NodeId fixed : gauge) problem.SetParameterBlockConstant(block(fixed));
+  for (const NodeId fixed : part.fixed) {
+    if (problem.HasParameterBlock(block(fixed))) problem.SetParameterBlockConstant(block(fixed));
+  }
   ceres::Solver::Summary solved;
   ceres::Solve(SolverOptions(options), &problem, &solved);
   solution.chi2 = 2.0 * solved.final_cost;
   solution.iterations = static_cast<int>(solved.iterations.size()) - 1;
   solution.converged = solved.termination_type == ceres::CONVERGENCE;
   return solution;
+}
+
+void SetPoses(const std::vector<PoseBlock>& poses, PoseGraph& graph) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    graph.SetPose(static_cast<NodeId>(i), {poses[i][0], poses[i][1], WrapAngle(poses[i][2])});
+  }
 }
 
 // Ours: poses whose residuals are on average ten times what the covariances promise may lie outside
@@ -163,6 +188,60 @@ bool FitsPoorly(double chi2, std::size_t edges) {
   return chi2 > kPoorRatio * 3.0 * static_cast<double>(edges);
 }
 
+// Whether an edge is as good as met by the poses, for one that only looks for candidates.
+bool IsSettled(const UpdateOptions& options, const PoseGraph& graph, const Edge& edge) {
+  const Pose2 T_from_to = Between(graph.nodes()[static_cast<std::size_t>(edge.from)].T_world_robot,
+                                  graph.nodes()[static_cast<std::size_t>(edge.to)].T_world_robot);
+  const Pose2& measured = edge.T_from_to.mean;
+  return Distance(T_from_to, measured) < options.settled_m &&
+         std::abs(WrapAngle(T_from_to.theta - measured.theta)) < DegToRad(options.settled_deg);
+}
+
+// The nodes nearest to the ends of `edges`, by number of edges, `count` of them or a few more.
+std::vector<NodeId> NodesAround(const PoseGraph& graph, const std::vector<EdgeId>& edges,
+                                std::size_t count) {
+  std::vector<NodeId> nodes;
+  std::vector<bool> seen(graph.nodes().size(), false);
+  const auto see = [&](NodeId node) {
+    if (seen[static_cast<std::size_t>(node)]) return;
+    seen[static_cast<std::size_t>(node)] = true;
+    nodes.push_back(node);
+  };
+  for (const EdgeId id : edges) {
+    see(graph.edges()[static_cast<std::size_t>(id)].from);
+    see(graph.edges()[static_cast<std::size_t>(id)].to);
+  }
+  for (std::size_t i = 0; i < nodes.size() && nodes.size() < count; ++i) {
+    for (const EdgeId id : graph.EdgesOf(nodes[i])) {
+      see(graph.edges()[static_cast<std::size_t>(id)].from);
+      see(graph.edges()[static_cast<std::size_t>(id)].to);
+    }
+  }
+  return nodes;
+}
+
+// All edges that touch `moving`; what they lead to beyond stays, and the gauge always.
+Part PartAround(const PoseGraph& graph, const std::vector<NodeId>& moving,
+                const std::vector<NodeId>& gauge) {
+  Part part;
+  std::vector<bool> moves(graph.nodes().size(), false);
+  for (const NodeId node : moving) moves[static_cast<std::size_t>(node)] = true;
+  for (const NodeId node : gauge) moves[static_cast<std::size_t>(node)] = false;
+  for (const NodeId node : moving) {
+    const std::vector<EdgeId>& edges = graph.EdgesOf(node);
+    part.edges.insert(part.edges.end(), edges.begin(), edges.end());
+  }
+  std::sort(part.edges.begin(), part.edges.end());
+  part.edges.erase(std::unique(part.edges.begin(), part.edges.end()), part.edges.end());
+  for (const EdgeId id : part.edges) {
+    const Edge& edge = graph.edges()[static_cast<std::size_t>(id)];
+    for (const NodeId end : {edge.from, edge.to}) {
+      if (!moves[static_cast<std::size_t>(end)]) part.fixed.push_back(end);
+    }
+  }
+  return part;
+}
+
 }  // namespace
 
 OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph) {
@@ -170,20 +249,22 @@ OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph) 
   summary.converged = true;
   if (graph.edges().empty()) return summary;
 
-  std::deque<EdgeCost> costs;  // Ceres holds pointers to them
-  for (const Edge& edge : graph.edges()) costs.emplace_back(edge.T_from_to);
-  const std::vector<NodeId> gauge = FirstOfEachComponent(graph);
+  Part whole;
+  whole.edges.resize(graph.edges().size());
+  std::iota(whole.edges.begin(), whole.edges.end(), 0);
+  whole.fixed = FirstOfEachComponent(graph);
+  Costs costs = CostsOf(graph, whole);
   std::vector<PoseBlock> poses = PosesOf(graph);
-  summary.initial_chi2 = Chi2(graph, costs, poses);
+  summary.initial_chi2 = Chi2(graph, whole, costs, poses);
 
   Solution solution;
   const bool poor_start = FitsPoorly(summary.initial_chi2, costs.size());
   if (poor_start) {
     // The projection spreads over closures and odometry at once, by the surest paths.
-    solution = SolveFrom(ProjectedPoses(graph, gauge), options, graph, costs, gauge);
+    solution = SolveFrom(ProjectedPoses(graph, whole.fixed), options, graph, whole, costs);
   }
   if (!poor_start || !solution.converged || FitsPoorly(solution.chi2, costs.size())) {
-    Solution warm = SolveFrom(std::move(poses), options, graph, costs, gauge);
+    Solution warm = SolveFrom(std::move(poses), options, graph, whole, costs);
     warm.iterations += solution.iterations;
     if (!poor_start || warm.chi2 < solution.chi2) solution = std::move(warm);
   }
@@ -191,11 +272,50 @@ OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph) 
   summary.final_chi2 = solution.chi2;
   summary.iterations = solution.iterations;
   summary.converged = solution.converged;
-  for (std::size_t i = 0; i < solution.poses.size(); ++i) {
-    const PoseBlock& pose = solution.poses[i];
-    graph.SetPose(static_cast<NodeId>(i), {pose[0], pose[1], WrapAngle(pose[2])});
-  }
+  SetPoses(solution.poses, graph);
   return summary;
+}
+
+PoseGraphOptimizer::PoseGraphOptimizer(const UpdateOptions& options) : options_(options) {}
+
+OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
+  OptimizationSummary summary;
+  summary.converged = true;
+  // Where edges were removed, ids mean other edges now; Optimize() has seen to the poses.
+  known_edges_ = std::min(known_edges_, graph.edges().size());
+  // An edge that is settled can be unsettled only by a solve that moves one of its ends, and every
+  // solve takes in all edges of what it moves: it need not be looked at again.
+  std::vector<EdgeId> pulling;
+  double chi2 = 0.0;
+  for (; known_edges_ < graph.edges().size(); ++known_edges_) {
+    const Edge& edge = graph.edges()[known_edges_];
+    if (IsSettled(options_, graph, edge)) continue;
+    pulling.push_back(static_cast<EdgeId>(known_edges_));
+    chi2 += EdgeChi2(graph, edge);
+  }
+  summary.initial_chi2 = summary.final_chi2 = chi2;
+  if (pulling.empty()) return summary;
+
+  const std::vector<NodeId> gauge = FirstOfEachComponent(graph);
+  constexpr std::size_t kGrowth = 3;
+  auto count = static_cast<std::size_t>(std::max(2, options_.first_part_nodes));
+  for (bool first = true; chi2 <= options_.far_off_chi2; first = false, count *= kGrowth) {
+    const std::vector<NodeId> moving = NodesAround(graph, pulling, count);
+    if (2 * moving.size() > graph.nodes().size()) break;
+    if (!first && moving.size() * kGrowth < count) return summary;  // that was the whole component
+    const Part part = PartAround(graph, moving, gauge);
+    Costs costs = CostsOf(graph, part);
+    std::vector<PoseBlock> poses = PosesOf(graph);
+    summary.initial_chi2 = Chi2(graph, part, costs, poses);
+    Solution solution = SolveFrom(std::move(poses), options_.solver, graph, part, costs);
+    summary.final_chi2 = solution.chi2;
+    summary.iterations = solution.iterations;
+    summary.converged = solution.converged;
+    SetPoses(solution.poses, graph);
+    const double gain = summary.initial_chi2 - summary.final_chi2;
+    if (!first && gain < options_.negligible_gain) return summary;
+  }
+  return Optimize(options_.solver, graph);
 }
 
 double EdgeChi2(const PoseGraph& graph, const Edge& edge) {

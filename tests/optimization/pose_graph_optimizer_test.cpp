@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -215,6 +216,135 @@ TEST(Optimize, RepeatsBitForBitAndIsSilent) {
     const Pose2& b = second.nodes()[i].T_world_robot;
     EXPECT_EQ(std::memcmp(&a, &b, sizeof(Pose2)), 0);
   }
+}
+
+double LargestDeviation(const PoseGraph& a, const PoseGraph& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.nodes().size(); ++i) {
+    largest = std::max(largest, Distance(a.nodes()[i].T_world_robot, b.nodes()[i].T_world_robot));
+  }
+  return largest;
+}
+
+// Hands the edges of `whole` to an optimizer as mapping would: node by node, each where odometry
+// puts it from the node before, closures as soon as both ends are there.
+template <typename AfterUpdate>
+PoseGraph Grow(const PoseGraph& whole, PoseGraphOptimizer& optimizer, AfterUpdate&& after_update) {
+  PoseGraph graph;
+  graph.AddFloor({});
+  graph.AddNode(whole.nodes()[0]);
+  for (NodeId id = 1; id < static_cast<NodeId>(whole.nodes().size()); ++id) {
+    Node node = whole.nodes()[static_cast<std::size_t>(id)];
+    std::vector<Edge> edges;
+    for (const EdgeId edge_id : whole.EdgesOf(id)) {
+      const Edge& edge = whole.edges()[static_cast<std::size_t>(edge_id)];
+      if (std::max(edge.from, edge.to) != id) continue;
+      edges.push_back(edge);
+      if (edge.kind != EdgeKind::kOdometry) continue;
+      node.T_world_robot = graph.nodes().back().T_world_robot * edge.T_from_to.mean;
+    }
+    graph.AddNode(node);
+    for (const Edge& edge : edges) graph.AddEdge(edge);
+    if (edges.size() > 1) after_update(optimizer.Update(graph), graph);
+  }
+  return graph;
+}
+
+TEST(PoseGraphOptimizer, StaysNearTheFullSolutionOfAGrowingGraph) {
+  const std::vector<Pose2> truth = Rounds(25, 6);
+  const PoseGraph whole = NoisyRounds(truth, 25, 1.0, 11);
+  PoseGraphOptimizer optimizer({});
+  int updates = 0;
+  int moved = 0;
+  const PoseGraph grown =
+      Grow(whole, optimizer, [&](const OptimizationSummary& summary, const PoseGraph& graph) {
+        moved += summary.iterations > 0 ? 1 : 0;
+        EXPECT_TRUE(summary.converged);
+        if (++updates % 20 != 0) return;
+        PoseGraph solved = graph;
+        Optimize({}, solved);
+        EXPECT_LT(LargestDeviation(graph, solved), 0.15) << "m";
+      });
+  EXPECT_EQ(updates, 250);
+  EXPECT_GT(moved, 20);
+  EXPECT_EQ(grown.edges().size(), whole.edges().size());
+}
+
+TEST(PoseGraphOptimizer, WhatFitsMovesNothing) {
+  const std::vector<Pose2> truth = Rounds(6, 2);
+  PoseGraph graph = NoisyRounds(truth, 6, 0.0, 1);
+  const PoseGraph before = graph;
+  PoseGraphOptimizer optimizer({});
+  EXPECT_EQ(optimizer.Update(graph).iterations, 0);
+  EXPECT_EQ(LargestDeviation(graph, before), 0.0) << "m";
+}
+
+TEST(PoseGraphOptimizer, FarNodesStayWhenASmallLoopCloses) {
+  // Sure rounds, then a new node beside them that a closure pulls by 0.2 m.
+  const std::vector<Pose2> truth = Rounds(150, 3);
+  PoseGraph graph = NoisyRounds(truth, 150, 0.5, 3);
+  PoseGraphOptimizer optimizer({});
+  Optimize({}, graph);
+  optimizer.Update(graph);
+  const PoseGraph before = graph;
+  const auto last = static_cast<NodeId>(graph.nodes().size() - 1);
+  Node node;
+  node.T_world_robot = graph.nodes().back().T_world_robot * Pose2{1.2, 0.0, 0.0};
+  const NodeId fresh = graph.AddNode(node);
+  graph.AddEdge({last, fresh, {{1.2, 0.0, 0.0}, EdgeCovariance()}, EdgeKind::kOdometry});
+  const Pose2 T_fresh_old = Between(node.T_world_robot, before.nodes()[1200].T_world_robot);
+  graph.AddEdge(
+      {fresh, 1200, {T_fresh_old * Pose2{0.2, 0.0, 0.0}, EdgeCovariance()}, EdgeKind::kClosure});
+  EXPECT_GT(optimizer.Update(graph).iterations, 0);
+  EXPECT_GT(Distance(graph.nodes().back().T_world_robot, node.T_world_robot), 0.05) << "m";
+  int moved = 0;
+  for (std::size_t i = 0; i < before.nodes().size(); ++i) {
+    moved += Distance(graph.nodes()[i].T_world_robot, before.nodes()[i].T_world_robot) > 0 ? 1 : 0;
+  }
+  EXPECT_GT(moved, 10);
+  EXPECT_LT(moved, 600) << "of " << before.nodes().size();
+  PoseGraph solved = graph;
+  Optimize({}, solved);
+  EXPECT_LT(LargestDeviation(graph, solved), 0.05) << "m";
+}
+
+TEST(PoseGraphOptimizer, EdgesMayBeRemovedInBetween) {
+  const std::vector<Pose2> truth = Rounds(6, 3);
+  PoseGraph graph = NoisyRounds(truth, 6, 1.0, 4);
+  PoseGraphOptimizer optimizer({});
+  optimizer.Update(graph);
+  graph.RemoveEdge(static_cast<EdgeId>(graph.edges().size()) - 1);
+  Optimize({}, graph);
+  optimizer.Update(graph);
+  graph.AddEdge({3, 40, {{}, EdgeCovariance()}, EdgeKind::kClosure});
+  EXPECT_GT(optimizer.Update(graph).iterations, 0);
+}
+
+TEST(PoseGraphOptimizer, OtherComponentsKeepTheirFirstNode) {
+  PoseGraph graph;
+  graph.AddFloor({});
+  for (int i = 0; i < 8; ++i) {
+    Node node;
+    node.T_world_robot = {static_cast<double>(i), 0.0, 0.0};
+    graph.AddNode(node);
+  }
+  const UncertainPose2 step{{1.0, 0.0, 0.0}, EdgeCovariance()};
+  for (const NodeId i : {0, 1, 2, 4, 5, 6}) graph.AddEdge({i, i + 1, step, EdgeKind::kOdometry});
+  PoseGraphOptimizer optimizer({});
+  optimizer.Update(graph);
+  graph.AddEdge({7, 4, {{-2.7, 0.0, 0.0}, EdgeCovariance()}, EdgeKind::kClosure});
+  EXPECT_GT(optimizer.Update(graph).iterations, 0);
+  EXPECT_EQ(graph.nodes()[4].T_world_robot.x, 4.0) << "m";
+  EXPECT_NEAR(graph.nodes()[7].T_world_robot.x, 6.775, 0.002) << "m";
+  EXPECT_EQ(graph.nodes()[3].T_world_robot.x, 3.0) << "m";
+}
+
+TEST(PoseGraphOptimizer, RepeatsBitForBit) {
+  const PoseGraph whole = NoisyRounds(Rounds(10, 4), 10, 1.0, 12);
+  const auto nothing = [](const OptimizationSummary&, const PoseGraph&) {};
+  PoseGraphOptimizer first({});
+  PoseGraphOptimizer second({});
+  EXPECT_EQ(LargestDeviation(Grow(whole, first, nothing), Grow(whole, second, nothing)), 0.0);
 }
 
 struct PublicGraph {
