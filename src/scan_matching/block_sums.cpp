@@ -2,7 +2,6 @@
 #include "masked_mapper/scan_matching/block_sums.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -20,26 +19,39 @@ static_assert(LookupTable::kPadding >= kSize, "blocks are read past the table's 
 typedef std::uint8_t Bytes __attribute__((vector_size(kSize)));
 typedef std::uint16_t Words __attribute__((vector_size(2 * kSize)));
 
-inline Words LoadWords(const std::uint8_t* from) {
+// A block of offsets as vectors: one row of 8 in each, or two rows of 4.
+template <int kBlock>
+inline Words LoadWords(const std::uint8_t* from, std::ptrdiff_t stride) {
   Bytes bytes;
-  std::memcpy(&bytes, from, sizeof(bytes));
+  if constexpr (kBlock == 8) {
+    std::memcpy(&bytes, from, 8);
+  } else {
+    std::uint32_t rows[2];
+    std::memcpy(&rows[0], from, 4);
+    std::memcpy(&rows[1], from + stride, 4);
+    std::memcpy(&bytes, rows, 8);
+  }
   return __builtin_convertvector(bytes, Words);
 }
 
-// Adds up 16-bit parts, which hold points of up to kMaxWeight together, into the sums.
-template <int kRows>
+// Adds up 16-bit parts, which hold points of up to kMaxWeight together, into the sums of a block of
+// kBlock x kBlock offsets.
+template <int kBlock>
 class Accumulator {
  public:
   explicit Accumulator(const LookupTable::Level& level)
       : level_(level),
-        end_x_(static_cast<std::uint32_t>(level.width + kSize)),
-        end_y_(static_cast<std::uint32_t>(level.height + kSize)) {}
+        end_x_(static_cast<std::uint32_t>(level.width + kBlock)),
+        end_y_(static_cast<std::uint32_t>(level.height + kBlock)) {}
 
   void Add(std::int32_t left, std::int32_t bottom) {
     if (!Reaches(left, bottom)) return;
     if (++weight_ > kMaxWeight) Flush(1);
     const std::uint8_t* from = level_.data + bottom * level_.stride + left;
-    for (int row = 0; row < kRows; ++row, from += level_.stride) part_[row] += LoadWords(from);
+    for (Words& part : parts_) {
+      part += LoadWords<kBlock>(from, level_.stride);
+      from += kRowsPerPart * level_.stride;
+    }
   }
 
   void Add(std::int32_t left, std::int32_t bottom, std::uint32_t count) {
@@ -48,8 +60,9 @@ class Accumulator {
     if (weight_ > kMaxWeight) Flush(count);
     const std::uint8_t* from = level_.data + bottom * level_.stride + left;
     const Words counts = Words{} + static_cast<std::uint16_t>(count);
-    for (int row = 0; row < kRows; ++row, from += level_.stride) {
-      part_[row] += LoadWords(from) * counts;
+    for (Words& part : parts_) {
+      part += LoadWords<kBlock>(from, level_.stride) * counts;
+      from += kRowsPerPart * level_.stride;
     }
   }
 
@@ -59,20 +72,21 @@ class Accumulator {
   }
 
  private:
+  static constexpr int kRowsPerPart = kSize / kBlock;
+  static constexpr int kParts = kBlock / kRowsPerPart;
+
   // Whether a block from this cell on touches anything but zeros; if so, all of it may be read.
   bool Reaches(std::int32_t left, std::int32_t bottom) const {
-    return static_cast<std::uint32_t>(left + kSize) < end_x_ &&
-           static_cast<std::uint32_t>(bottom + kSize) < end_y_;
+    return static_cast<std::uint32_t>(left + kBlock) < end_x_ &&
+           static_cast<std::uint32_t>(bottom + kBlock) < end_y_;
   }
 
   void Flush(std::uint32_t weight) {
-    for (int row = 0; row < kRows; ++row) {
-      for (int column = 0; column < kSize; ++column) {
-        sums_[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] +=
-            part_[row][column];
-      }
-      part_[row] = Words{};
+    for (int i = 0; i < kBlock * kBlock; ++i) {
+      sums_[static_cast<std::size_t>(i / kBlock)][static_cast<std::size_t>(i % kBlock)] +=
+          parts_[i / kSize][i % kSize];
     }
+    for (Words& part : parts_) part = Words{};
     weight_ = weight;
   }
 
@@ -80,23 +94,23 @@ class Accumulator {
   std::uint32_t end_x_;
   std::uint32_t end_y_;
   std::uint32_t weight_ = 0;
-  Words part_[kRows] = {};
+  Words parts_[kParts] = {};
   BlockSums::Sums sums_{};
 };
 
-template <int kRows>
+template <int kBlock>
 BlockSums::Sums SumCells(const LookupTable::Level& level, const std::int32_t* cells_x,
                          const std::int32_t* cells_y, std::size_t count, std::int32_t x,
                          std::int32_t y) {
-  Accumulator<kRows> accumulator(level);
+  Accumulator<kBlock> accumulator(level);
   for (std::size_t i = 0; i < count; ++i) accumulator.Add(cells_x[i] + x, cells_y[i] + y);
   return accumulator.Total();
 }
 
-template <int kRows, typename Point>
+template <int kBlock, typename Point>
 BlockSums::Sums SumBinned(const LookupTable::Level& level, const Point* begin, const Point* end,
                           std::int32_t x, std::int32_t y) {
-  Accumulator<kRows> accumulator(level);
+  Accumulator<kBlock> accumulator(level);
   for (; begin != end; ++begin) accumulator.Add(begin->x + x, begin->y + y, begin->count);
   return accumulator.Total();
 }
@@ -171,15 +185,13 @@ void BlockSums::Bin(std::int32_t angle, int level, Range* range) {
 }
 
 BlockSums::Sums BlockSums::At(std::int32_t angle, int level, std::int32_t x, std::int32_t y,
-                              int rows) {
-  assert(rows == 2 || rows == 4 || rows == 8);
+                              int size) {
   const auto slice = static_cast<std::size_t>(angle + grid_.half_angle);
   const LookupTable::Level& cells = table_.level(level);
   if (level == 0) {
     const std::int32_t* cells_x = cells_x_.data() + slice * count_;
     const std::int32_t* cells_y = cells_y_.data() + slice * count_;
-    if (rows == 2) return SumCells<2>(cells, cells_x, cells_y, count_, x, y);
-    if (rows == 4) return SumCells<4>(cells, cells_x, cells_y, count_, x, y);
+    if (size <= 4) return SumCells<4>(cells, cells_x, cells_y, count_, x, y);
     return SumCells<8>(cells, cells_x, cells_y, count_, x, y);
   }
   Range& range =
@@ -187,8 +199,7 @@ BlockSums::Sums BlockSums::At(std::int32_t angle, int level, std::int32_t x, std
   if (range.end == 0) Bin(angle, level, &range);
   const BinnedPoint* begin = binned_.data() + range.begin;
   const BinnedPoint* end = binned_.data() + range.end;
-  if (rows == 2) return SumBinned<2>(cells, begin, end, x, y);
-  if (rows == 4) return SumBinned<4>(cells, begin, end, x, y);
+  if (size <= 4) return SumBinned<4>(cells, begin, end, x, y);
   return SumBinned<8>(cells, begin, end, x, y);
 }
 

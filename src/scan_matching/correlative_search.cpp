@@ -85,9 +85,48 @@ struct Block {
   GridPose pose;
 };
 
-// The order of the queue. No answer depends on that of equal bounds.
-struct IsWorse {
-  bool operator()(const Block& a, const Block& b) const { return a.bound < b.bound; }
+// The blocks of all problems, best bound first: to within a bucket of bounds, since no answer
+// depends on the order within one and a bucket is cheaper to find than a place in a heap.
+class BlockQueue {
+ public:
+  BlockQueue() : newest_(kBuckets, kNone) {}
+
+  void Push(const Block& block) {
+    const std::size_t bucket = BucketOf(block.bound);
+    entries_.push_back({block, newest_[bucket]});
+    newest_[bucket] = static_cast<std::uint32_t>(entries_.size() - 1);
+    best_ = std::max(best_, bucket);
+  }
+
+  /// Of a queue that is not empty.
+  Block Pop() {
+    while (newest_[best_] == kNone) --best_;
+    const Entry& entry = entries_[newest_[best_]];
+    newest_[best_] = entry.older;
+    return entry.block;
+  }
+
+  // Whether all blocks that come after one with `bound` are below `objective`.
+  static bool IsBelow(double bound, double objective) {
+    return bound < objective && BucketOf(bound) < BucketOf(objective);
+  }
+
+ private:
+  struct Entry {
+    Block block;
+    std::uint32_t older;
+  };
+
+  static constexpr std::size_t kBuckets = 4096;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  static std::size_t BucketOf(double bound) {
+    return static_cast<std::size_t>(std::clamp(bound, 0.0, 1.0) * (kBuckets - 1));
+  }
+
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> newest_;  // of each bucket
+  std::size_t best_ = 0;
 };
 
 bool IsBefore(const GridPose& a, const GridPose& b) {
@@ -125,27 +164,30 @@ class Search {
     if (count_ > 0) RaiseNeeded(problem.min_score);
   }
 
-  void AddRoots(std::vector<Block>* blocks) {
+  void AddRoots(BlockQueue* queue) {
     if (count_ == 0) return;
     const SearchGrid& grid = problem_.grid;
     const int level = problem_.table->levels() - 1;
     for (std::int32_t angle = -grid.half_angle; angle <= grid.half_angle; ++angle) {
       for (std::int32_t y = -grid.half_y >> level; y <= grid.half_y >> level; y += kSize) {
         for (std::int32_t x = -grid.half_x >> level; x <= grid.half_x >> level; x += kSize) {
-          Evaluate(level, {angle, x, y}, kSize, blocks);
+          Evaluate(level, {angle, x, y}, kSize, queue);
         }
       }
     }
   }
 
-  // Whether a block of this search may hold its answer.
-  bool MayHold(const Block& block) const { return block.bound >= result_.objective; }
+  // Whether the answer is known.
+  bool IsDone() const { return waiting_ == 0; }
 
-  // Appends the blocks within this one that may hold the answer.
-  void Expand(const Block& block, std::vector<Block>* blocks) {
+  // Replaces a block by the blocks within it that may hold the answer. Blocks come best first.
+  void Expand(const Block& block, BlockQueue* queue) {
+    --waiting_;
+    if (BlockQueue::IsBelow(block.bound, result_.objective)) waiting_ = 0;
+    if (block.bound < result_.objective) return;
     const int level = std::max(block.level - kLevelsPerStep, 0);
     const int size = 1 << (block.level - level);
-    Evaluate(level, {block.pose.angle, block.pose.x * size, block.pose.y * size}, size, blocks);
+    Evaluate(level, {block.pose.angle, block.pose.x * size, block.pose.y * size}, size, queue);
   }
 
   SearchResult Result() const {
@@ -162,14 +204,13 @@ class Search {
 
   // Looks at `size` x `size` blocks of a level from `first` on. Those that may hold the answer are
   // appended; at level 0 the best becomes the answer so far.
-  void Evaluate(int level, const GridPose& first, int size, std::vector<Block>* blocks) {
+  void Evaluate(int level, const GridPose& first, int size, BlockQueue* queue) {
     const SearchGrid& grid = problem_.grid;
     const std::int32_t columns = std::min(size, (grid.half_x >> level) - first.x + 1);
     const std::int32_t rows = std::min(size, (grid.half_y >> level) - first.y + 1);
     const std::int32_t first_column = std::max(0, (-grid.half_x >> level) - first.x);
     const std::int32_t first_row = std::max(0, (-grid.half_y >> level) - first.y);
-    const BlockSums::Sums sums =
-        sums_.At(first.angle, level, first.x, first.y, rows <= 2 ? 2 : (rows <= 4 ? 4 : 8));
+    const BlockSums::Sums sums = sums_.At(first.angle, level, first.x, first.y, size);
     for (std::int32_t row = first_row; row < rows; ++row) {
       for (std::int32_t column = first_column; column < columns; ++column) {
         const std::uint32_t sum =
@@ -178,12 +219,12 @@ class Search {
           if (!result_.found) largest_dropped_ = std::max(largest_dropped_, sum);
           continue;
         }
-        Consider(level, {first.angle, first.x + column, first.y + row}, Score(sum, count_), blocks);
+        Consider(level, {first.angle, first.x + column, first.y + row}, Score(sum, count_), queue);
       }
     }
   }
 
-  void Consider(int level, const GridPose& pose, double score, std::vector<Block>* blocks) {
+  void Consider(int level, const GridPose& pose, double score, BlockQueue* queue) {
     const std::int32_t span = 1 << level;
     if (Contains(problem_.left_out, pose.angle, pose.x * span, pose.y * span, span)) return;
     if (level == 0) {
@@ -197,7 +238,10 @@ class Search {
                                      std::max(pose.y * span, -grid.half_y),
                                      std::min(pose.y * span + span - 1, grid.half_y));
     const double bound = score - problem_.prior_weight * chi2;
-    if (bound >= result_.objective) blocks->push_back({bound, index_, level, pose});
+    if (bound >= result_.objective) {
+      queue->Push({bound, index_, level, pose});
+      ++waiting_;
+    }
   }
 
   // From now on sums are needed whose score reaches `score`: exactly those from needed_ on.
@@ -216,44 +260,27 @@ class Search {
   SearchResult result_;
   std::uint32_t needed_ = 0;
   std::uint32_t largest_dropped_ = 0;
+  std::size_t waiting_ = 0;  // blocks in the queue
 };
 
 }  // namespace
 
 std::vector<SearchResult> SearchJointly(const std::vector<SearchProblem>& problems) {
   std::vector<std::unique_ptr<Search>> searches;
-  std::vector<std::size_t> waiting;  // blocks of each problem; 0: its answer is known
-  std::vector<Block> queue;          // a heap, the best bound first
+  BlockQueue queue;
+  std::size_t unanswered = 0;
   for (const SearchProblem& problem : problems) {
-    const std::size_t before = queue.size();
     searches.push_back(
         std::make_unique<Search>(problem, static_cast<std::int32_t>(searches.size())));
     searches.back()->AddRoots(&queue);
-    waiting.push_back(queue.size() - before);
+    unanswered += searches.back()->IsDone() ? 0U : 1U;
   }
-  std::size_t unanswered = 0;
-  for (const std::size_t blocks : waiting) unanswered += blocks > 0 ? 1U : 0U;
-  std::make_heap(queue.begin(), queue.end(), IsWorse());
-  std::vector<Block> children;
   while (unanswered > 0) {
-    std::pop_heap(queue.begin(), queue.end(), IsWorse());
-    const Block block = queue.back();
-    queue.pop_back();
-    const auto index = static_cast<std::size_t>(block.problem);
-    if (waiting[index] == 0) continue;
-    Search& search = *searches[index];
-    // What comes later of this problem has no better bound.
-    waiting[index] = search.MayHold(block) ? waiting[index] - 1 : 0;
-    if (search.MayHold(block)) {
-      children.clear();
-      search.Expand(block, &children);
-      waiting[index] += children.size();
-      for (const Block& child : children) {
-        queue.push_back(child);
-        std::push_heap(queue.begin(), queue.end(), IsWorse());
-      }
-    }
-    if (waiting[index] == 0) --unanswered;
+    const Block block = queue.Pop();
+    Search& search = *searches[static_cast<std::size_t>(block.problem)];
+    if (search.IsDone()) continue;
+    search.Expand(block, &queue);
+    if (search.IsDone()) --unanswered;
   }
   std::vector<SearchResult> results;
   for (const std::unique_ptr<Search>& search : searches) results.push_back(search->Result());

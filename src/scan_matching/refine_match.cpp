@@ -233,8 +233,8 @@ struct Moments {
   double second = 0.0;
 };
 
-constexpr double kFirstStep = 0.01;    // m
-constexpr double kStepGrowth = 1.25;   // each step over the one before
+constexpr double kFirstStep = 0.02;    // m
+constexpr double kStepGrowth = 1.3;    // each step over the one before
 constexpr double kNegligible = 0.002;  // likelihood at which a side ends
 
 Moments SideMoments(const LocalSurface& surface, const Eigen::Vector3d& direction, double top,
@@ -269,7 +269,11 @@ RefinedMatch RefineMatch(const LookupTable& table,
                          const Pose2& T_reference_query_initial, const RefineOptions& options) {
   RefinedMatch match;
   match.T_reference_query.mean = T_reference_query_initial;
-  if (points_in_query.empty()) return match;
+  if (points_in_query.empty()) {
+    match.T_reference_query.covariance =
+        ResponseCovariance(table, points_in_query, T_reference_query_initial, options);
+    return match;
+  }
   const double radius = RmsRadius(points_in_query);
   const double max_turn = DegToRad(options.max_turn_deg);
   const Pose2& start = T_reference_query_initial;

@@ -33,10 +33,10 @@ class BlockSums {
   BlockSums(const LookupTable& table, const std::vector<Eigen::Vector2d>& points_in_query,
             const SearchGrid& grid);
 
-  /// Sums at level `level` for the offsets (x + column, y + row) of the level's cells, row < rows:
-  /// at level 0 the sums of grid poses, else bounds of the sums below. `angle` lies in the grid;
-  /// `rows` is 2, 4 or 8.
-  Sums At(std::int32_t angle, int level, std::int32_t x, std::int32_t y, int rows);
+  /// Sums at level `level` for the offsets (x + column, y + row) of the level's cells, row and
+  /// column < size <= kSize: at level 0 the sums of grid poses, else bounds of the sums below.
+  /// `angle` lies in the grid.
+  Sums At(std::int32_t angle, int level, std::int32_t x, std::int32_t y, int size);
 
  private:
   // Points that fall into one cell of a coarse level.
