@@ -3,6 +3,8 @@
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(ZLIB REQUIRED)
+find_package(BZip2 REQUIRED)
+find_library(LZ4_LIBRARY lz4 REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 find_package(octomap 1.9 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)

@@ -7,12 +7,13 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build
   libeigen3-dev libpcl-dev liboctomap-dev libceres-dev
-  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev
+  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libbz2-dev liblz4-dev
   libgtest-dev
 )
 checks=(
   clang-format clang-tidy python3
   octomap-tools
+  python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs  # to write test bags
 )
 
 case "${1:-}" in

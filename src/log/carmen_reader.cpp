@@ -11,6 +11,7 @@
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/line_splitter.hpp"
+#include "masked_mapper/log/read_ahead.hpp"
 #include "masked_mapper/log/scan_calibration.hpp"
 #include "masked_mapper/log/stamp_mender.hpp"
 #include "masked_mapper/log/text_source.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 constexpr std::size_t kTextBlock = 256 * 1024;
 constexpr std::size_t kTextBlocksAhead = 4;
-constexpr std::size_t kBatch = 128;
-constexpr std::size_t kBatchesAhead = 8;
 constexpr std::size_t kMostMessageNames = 64;
 
 /// Whether the beginning of a file could be text: no zero bytes, hardly any control characters.
@@ -42,7 +41,8 @@ void CheckBeginning(const std::string& path, const TextSource& source, std::stri
   }
   if (block.empty()) throw InputError(path + ": is empty");
   if (!LooksLikeText(block.substr(0, kLookedAt))) {
-    throw InputError(path + ": is binary, expected a CARMEN log (text, or text in gzip)");
+    throw InputError(path +
+                     ": is binary, expected a CARMEN log (text, or text in gzip) or a ROS 1 bag");
   }
 }
 
@@ -82,12 +82,6 @@ struct TextBlock {
   bool is_last = false;
   bool truncated = false;
   std::uint64_t trailing_bytes = 0;
-};
-
-struct Batch {
-  std::vector<Observation> observations;
-  LogStatistics statistics;
-  double progress = 0.0;
 };
 
 /// Lines in, mended observations out; the counting.
@@ -179,42 +173,23 @@ class LineReader {
   bool has_first_stamp_ = false;
 };
 
-class CarmenReader : public LogReader {
+/// The text of a log, decompressed a few blocks ahead.
+class TextAhead {
  public:
-  CarmenReader(const std::string& path, const LogOptions& options)
-      : options_(options), calibration_(LookAt(path, options)), source_(path) {
-    statistics_.max_range = calibration_.max_range();
-    text_thread_ = std::thread([this] { ReadText(); });
-    try {
-      line_thread_ = std::thread([this] { ReadLines(); });
-    } catch (...) {
-      Stop();
-      throw;
-    }
+  explicit TextAhead(const std::string& path) : source_(path), thread_([this] { Read(); }) {}
+  ~TextAhead() {
+    blocks_.Close();
+    thread_.join();
   }
 
-  ~CarmenReader() override { Stop(); }
-
-  std::optional<Observation> Next() override {
-    while (position_ == batch_.size()) {
-      std::optional<Batch> batch = batches_.Pop();
-      if (!batch) {
-        if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-        return std::nullopt;
-      }
-      batch_ = std::move(batch->observations);
-      position_ = 0;
-      statistics_ = std::move(batch->statistics);
-      progress_ = batch->progress;
-    }
-    return std::move(batch_[position_++]);
+  std::optional<TextBlock> Next() {
+    std::optional<TextBlock> block = blocks_.Pop();
+    if (!block && error_) std::rethrow_exception(error_);
+    return block;
   }
-
-  const LogStatistics& Statistics() const override { return statistics_; }
-  double Progress() const override { return progress_; }
 
  private:
-  void ReadText() {
+  void Read() {
     try {
       bool more = true;
       while (more) {
@@ -227,86 +202,69 @@ class CarmenReader : public LogReader {
         block.truncated = source_.Truncated();
         block.trailing_bytes = source_.TrailingBytes();
         more = !block.is_last;
-        more = text_.Push(std::move(block)) && more;
+        more = blocks_.Push(std::move(block)) && more;
       }
-    } catch (...) {
-      text_error_ = std::current_exception();
-    }
-    text_.Close();
-  }
-
-  void ReadLines() {
-    try {
-      LineReader lines(options_, calibration_);
-      LineSplitter splitter;
-      bool last_line_good = true;
-      const auto on_line = [&](const char* begin, const char* end, bool too_long) {
-        last_line_good = lines.Add(begin, end, too_long);
-      };
-      while (std::optional<TextBlock> block = text_.Pop()) {
-        splitter.Add(block->text, on_line);
-        if (block->is_last) {
-          if (splitter.Finish(on_line) && !last_line_good) lines.SetTruncated();
-          if (block->truncated) lines.SetTruncated();
-          lines.SetTrailingBytes(block->trailing_bytes);
-          lines.Finish();
-        }
-        if (!HandOver(&lines, block->progress)) break;
-      }
-      error_ = text_error_;
     } catch (...) {
       error_ = std::current_exception();
     }
-    text_.Close();
-    batches_.Close();
+    blocks_.Close();
   }
 
-  /// Passes on what is ready; false when nobody wants it any more.
-  bool HandOver(LineReader* lines, double progress) {
-    bool more = true;
-    while (more) {
-      Batch batch;
-      while (batch.observations.size() < kBatch) {
-        std::optional<Observation> observation = lines->Next();
-        more = observation.has_value();
-        if (!more) break;
-        batch.observations.push_back(std::move(*observation));
-      }
-      batch.statistics = lines->Statistics();
-      batch.progress = progress;
-      if (!batches_.Push(std::move(batch))) return false;
-    }
-    return true;
-  }
-
-  void Stop() {
-    text_.Close();
-    batches_.Close();
-    if (text_thread_.joinable()) text_thread_.join();
-    if (line_thread_.joinable()) line_thread_.join();
-  }
-
-  const LogOptions options_;
-  const ScanCalibration calibration_;
   TextSource source_;
-  BoundedQueue<TextBlock> text_{kTextBlocksAhead};
-  BoundedQueue<Batch> batches_{kBatchesAhead};
-  // Written before the queue behind it is closed, read after.
-  std::exception_ptr text_error_;
-  std::exception_ptr error_;
-  std::thread text_thread_;
-  std::thread line_thread_;
-
-  std::vector<Observation> batch_;
-  std::size_t position_ = 0;
-  LogStatistics statistics_;
-  double progress_ = 0.0;
+  BoundedQueue<TextBlock> blocks_{kTextBlocksAhead};
+  std::exception_ptr error_;  ///< written before the queue is closed, read after
+  std::thread thread_;
 };
+
+/// Passes on what is ready; false when nobody wants it any more.
+bool HandOver(LineReader* lines, double progress, const ReadAhead::Sink& sink) {
+  bool more = true;
+  while (more) {
+    ObservationBatch batch;
+    while (batch.observations.size() < ObservationBatch::kSize) {
+      std::optional<Observation> observation = lines->Next();
+      more = observation.has_value();
+      if (!more) break;
+      batch.observations.push_back(std::move(*observation));
+    }
+    batch.statistics = lines->Statistics();
+    batch.progress = progress;
+    if (!sink(std::move(batch))) return false;
+  }
+  return true;
+}
+
+void ReadCarmenLog(const std::string& path, const LogOptions& options,
+                   const ScanCalibration& calibration, const ReadAhead::Sink& sink) {
+  TextAhead text(path);
+  LineReader lines(options, calibration);
+  LineSplitter splitter;
+  bool last_line_good = true;
+  const auto on_line = [&](const char* begin, const char* end, bool too_long) {
+    last_line_good = lines.Add(begin, end, too_long);
+  };
+  while (const std::optional<TextBlock> block = text.Next()) {
+    splitter.Add(block->text, on_line);
+    if (block->is_last) {
+      if (splitter.Finish(on_line) && !last_line_good) lines.SetTruncated();
+      if (block->truncated) lines.SetTruncated();
+      lines.SetTrailingBytes(block->trailing_bytes);
+      lines.Finish();
+    }
+    if (!HandOver(&lines, block->progress, sink)) return;
+  }
+}
 
 }  // namespace
 
 std::unique_ptr<LogReader> OpenCarmenLog(const std::string& path, const LogOptions& options) {
-  return std::make_unique<CarmenReader>(path, options);
+  const ScanCalibration calibration = LookAt(path, options);
+  LogStatistics statistics;
+  statistics.max_range = calibration.max_range();
+  return std::make_unique<ReadAhead>(statistics,
+                                     [path, options, calibration](const ReadAhead::Sink& sink) {
+                                       ReadCarmenLog(path, options, calibration, sink);
+                                     });
 }
 
 }  // namespace masked_mapper

@@ -31,13 +31,19 @@ constexpr auto kLaterOnTopLast = [](const auto& a, const auto& b) {
 
 }  // namespace
 
-bool StampMender::FitsAfter(double stamp, std::size_t kind) const {
-  return stamp >= newest_ - kLatest && stamp <= newest_ + kLongestPause &&
-         stamp >= newest_of_kind_[kind] - kHeldStep;
+double StampMender::NewestOf(std::size_t stream) const {
+  const auto known = newest_of_stream_.find(stream);
+  return known == newest_of_stream_.end() ? -std::numeric_limits<double>::infinity()
+                                          : known->second;
 }
 
-bool StampMender::TryWrap(double raw_stamp, std::size_t kind) {
-  if (!FitsAfter(raw_stamp + offset_ + kWrap, kind)) return false;
+bool StampMender::FitsAfter(double stamp, std::size_t stream) const {
+  return stamp >= newest_ - kLatest && stamp <= newest_ + kLongestPause &&
+         stamp >= NewestOf(stream) - kHeldStep;
+}
+
+bool StampMender::TryWrap(double raw_stamp, std::size_t stream) {
+  if (!FitsAfter(raw_stamp + offset_ + kWrap, stream)) return false;
   offset_before_ = offset_;
   offset_ += kWrap;
   ++jumps_;
@@ -46,74 +52,73 @@ bool StampMender::TryWrap(double raw_stamp, std::size_t kind) {
 
 bool StampMender::ConfirmsNewClock(double raw_stamp) const {
   if (undecided_.empty()) return false;
-  const double step = raw_stamp - Stamp(undecided_.back());
+  const double step = raw_stamp - Stamp(undecided_.back().observation);
   return step >= -kLatest && step <= kLongestPause;
 }
 
-void StampMender::Add(Observation observation) {
+void StampMender::Add(Observation observation, std::size_t stream) {
   const double raw_stamp = Stamp(observation);
-  const std::size_t kind = observation.index();
   if (!has_stamp_) {
     has_stamp_ = true;
     newest_ = raw_stamp;
-    Accept(std::move(observation), raw_stamp);
-  } else if (FitsAfter(raw_stamp + offset_, kind)) {
+    Accept(std::move(observation), stream, raw_stamp);
+  } else if (FitsAfter(raw_stamp + offset_, stream)) {
     HoldUndecided();
-    Accept(std::move(observation), raw_stamp + offset_);
-  } else if (FitsAfter(raw_stamp + offset_before_, kind)) {
+    Accept(std::move(observation), stream, raw_stamp + offset_);
+  } else if (FitsAfter(raw_stamp + offset_before_, stream)) {
     HoldUndecided();
-    Accept(std::move(observation), raw_stamp + offset_before_);
-  } else if (TryWrap(raw_stamp, kind)) {
+    Accept(std::move(observation), stream, raw_stamp + offset_before_);
+  } else if (TryWrap(raw_stamp, stream)) {
     HoldUndecided();
-    Accept(std::move(observation), raw_stamp + offset_);
+    Accept(std::move(observation), stream, raw_stamp + offset_);
   } else {
     if (!ConfirmsNewClock(raw_stamp)) HoldUndecided();
-    undecided_.push_back(std::move(observation));
+    undecided_.push_back({stream, std::move(observation)});
     if (undecided_.size() >= kWitnesses) AdoptNewClock();
   }
 }
 
-void StampMender::Accept(Observation observation, double stamp) {
-  const std::size_t kind = observation.index();
-  if (stamp < newest_of_kind_[kind]) {
-    stamp = newest_of_kind_[kind];
+void StampMender::Accept(Observation observation, std::size_t stream, double stamp) {
+  if (stamp < NewestOf(stream)) {
+    stamp = NewestOf(stream);
     ++jumps_;
   }
   if (stamp < newest_) ++reordered_;
   if (stamp > newest_) typical_step_ = std::min(stamp - newest_, kHeldStep);
-  newest_of_kind_[kind] = stamp;
+  newest_of_stream_[stream] = stamp;
   newest_ = std::max(newest_, stamp);
   SetStamp(&observation, stamp);
-  heap_.push_back({stamp, sequence_++, std::move(observation)});
+  heap_.push_back({stamp, sequence_++, stream, std::move(observation)});
   std::push_heap(heap_.begin(), heap_.end(), kLaterOnTopLast);
 }
 
-void StampMender::Hold(Observation observation) {
+void StampMender::Hold(Observation observation, std::size_t stream) {
   ++jumps_;
-  const double stamp_of_kind = newest_of_kind_[observation.index()];
-  const double stamp = stamp_of_kind >= newest_ - kLongestPause ? stamp_of_kind : newest_;
-  Accept(std::move(observation), stamp);
+  const double stamp_of_stream = NewestOf(stream);
+  const double stamp = stamp_of_stream >= newest_ - kLongestPause ? stamp_of_stream : newest_;
+  Accept(std::move(observation), stream, stamp);
 }
 
 void StampMender::HoldUndecided() {
-  for (Observation& observation : std::exchange(undecided_, {})) Hold(std::move(observation));
+  for (Undecided& undecided : std::exchange(undecided_, {})) {
+    Hold(std::move(undecided.observation), undecided.stream);
+  }
 }
 
 void StampMender::AdoptNewClock() {
-  std::vector<Observation> witnesses = std::exchange(undecided_, {});
-  double first = Stamp(witnesses.front());
-  for (const Observation& witness : witnesses) first = std::min(first, Stamp(witness));
+  std::vector<Undecided> witnesses = std::exchange(undecided_, {});
+  double first = Stamp(witnesses.front().observation);
+  for (const Undecided& witness : witnesses) first = std::min(first, Stamp(witness.observation));
   const double step = first + offset_ - newest_;
   if (step < 0.0) {
     ++jumps_;
     offset_before_ = offset_;
     offset_ = newest_ + typical_step_ - first;
   }
-  // Behind a long pause the kinds start afresh; nothing from before it will be waited for.
   newest_ = first + offset_;
-  for (Observation& witness : witnesses) {
-    const double stamp = Stamp(witness) + offset_;
-    Accept(std::move(witness), stamp);
+  for (Undecided& witness : witnesses) {
+    const double stamp = Stamp(witness.observation) + offset_;
+    Accept(std::move(witness.observation), witness.stream, stamp);
   }
 }
 
@@ -130,6 +135,7 @@ std::optional<Observation> StampMender::Next() {
   std::pop_heap(heap_.begin(), heap_.end(), kLaterOnTopLast);
   Queued next = std::move(heap_.back());
   heap_.pop_back();
+  last_stream_ = next.stream;
   // Only what came later than it may be is caught here.
   if (next.stamp < last_out_) SetStamp(&next.observation, last_out_);
   last_out_ = std::max(last_out_, next.stamp);

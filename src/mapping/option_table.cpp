@@ -45,6 +45,16 @@ bool ParseValue(const std::string& text, bool& value) {
   return text == "true" || text == "false";
 }
 
+/// Names of topics and the like: nothing that YAML or JSON would have to escape.
+bool ParseValue(const std::string& text, std::string& value) {
+  constexpr std::size_t kLongest = 1000;
+  value = text;
+  return text.size() <= kLongest && std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                  std::string_view("/_,.- ").find(c) != std::string_view::npos;
+         });
+}
+
 template <typename Enum>
 Choice ChoiceOf(Enum& field, std::vector<std::string> names) {
   return {std::move(names), [&field] { return static_cast<std::size_t>(field); },
@@ -54,6 +64,7 @@ Choice ChoiceOf(Enum& field, std::vector<std::string> names) {
 template <typename Value>
 std::string TypeName() {
   if (std::is_same_v<Value, bool>) return "true or false";
+  if (std::is_same_v<Value, std::string>) return "a name";
   return std::is_same_v<Value, double> ? "a number" : "a whole number";
 }
 
@@ -93,11 +104,20 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"log.max_range", &o.log.max_range, 0, kFar,
        "m; at or beyond it nothing was hit; 0: found from the log"},
       {"log.min_range", &o.log.min_range, 0, 10, "m; anything nearer says nothing"},
-      {"log.laser_x", &o.log.laser_x, -10, 10, "m; scanner on the robot, where the log is silent"},
+      {"log.laser_x", &o.log.laser_x, -10, 10, "m; scanner on the robot; 0, 0, 0: as the log says"},
       {"log.laser_y", &o.log.laser_y, -10, 10, "m; to the left"},
       {"log.laser_theta_deg", &o.log.laser_theta_deg, -180, 180, "deg; counter-clockwise"},
       {"log.field_of_view_deg", &o.log.field_of_view_deg, 0, 360,
        "deg; of FLASER lines; 0: by the number of beams"},
+      {"log.scan_topic", &o.log.scan_topic, 0, 0,
+       "of ROS bags with several; a,b: merged into one scanner"},
+      {"log.odometry_topic", &o.log.odometry_topic, 0, 0,
+       "of ROS bags with several; none: not read"},
+      {"log.imu_topic", &o.log.imu_topic, 0, 0, "of ROS bags with several; none: not read"},
+      {"log.pressure_topic", &o.log.pressure_topic, 0, 0,
+       "of ROS bags with several; none: not read"},
+      {"log.strongest_echo", &o.log.strongest_echo, 0, 0,
+       "of a scanner with several echoes per beam; false: the first"},
 
       {"motion.source", ChoiceOf(motion.source, {"auto", "odometry", "scans", "fused"}), 0, 0,
        "auto: fused where scans come often enough, else odometry"},
@@ -317,6 +337,7 @@ std::string ValueText(const OptionEntry& entry) {
   struct {
     std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
     std::string operator()(const double* field) const { return NumberText(*field); }
+    std::string operator()(const std::string* field) const { return *field; }
     std::string operator()(const int* field) const { return std::to_string(*field); }
     std::string operator()(const std::size_t* field) const { return std::to_string(*field); }
     std::string operator()(const Choice& choice) const { return choice.names.at(choice.get()); }
@@ -326,6 +347,7 @@ std::string ValueText(const OptionEntry& entry) {
 
 std::string RangeText(const OptionEntry& entry) {
   if (std::holds_alternative<bool*>(entry.field)) return "true or false";
+  if (std::holds_alternative<std::string*>(entry.field)) return "a name";
   const auto* choice = std::get_if<Choice>(&entry.field);
   if (choice == nullptr) return NumberText(entry.min) + " to " + NumberText(entry.max);
   std::string names;
@@ -359,9 +381,11 @@ void SetOption(const std::string& where, const std::string& key, const std::stri
           using Value = std::remove_pointer_t<decltype(field)>;
           Value parsed{};
           if (!ParseValue(value, parsed)) fail(TypeName<Value>());
-          const auto number = static_cast<double>(parsed);
-          if (!std::is_same_v<Value, bool> && (number < entry->min || number > entry->max)) {
-            fail(RangeText(*entry));
+          if constexpr (!std::is_same_v<Value, std::string>) {
+            const auto number = static_cast<double>(parsed);
+            if (!std::is_same_v<Value, bool> && (number < entry->min || number > entry->max)) {
+              fail(RangeText(*entry));
+            }
           }
           *field = parsed;
         }
@@ -419,7 +443,8 @@ std::vector<std::pair<std::string, std::string>> OptionValues(const Options& opt
   std::vector<std::pair<std::string, std::string>> values;
   for (const OptionEntry& entry : OptionTable(copy)) {
     if (entry.key == "threads") continue;
-    const bool is_word = std::holds_alternative<Choice>(entry.field);
+    const bool is_word = std::holds_alternative<Choice>(entry.field) ||
+                         std::holds_alternative<std::string*>(entry.field);
     values.emplace_back(entry.key, is_word ? '"' + ValueText(entry) + '"' : ValueText(entry));
   }
   return values;

@@ -20,6 +20,13 @@ struct LogOptions {
   double laser_theta_deg = 0.0;    ///< deg
   double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by PARAM, else by the number of beams
   bool read_ranges = true;         ///< false: scans come without beams (a first look at a long log)
+
+  // Of ROS bags. Empty: the only topic of its type; `none`: not to be read.
+  std::string scan_topic;      ///< several, separated by commas, are merged into one virtual scan
+  std::string odometry_topic;  ///< without any: tf from odom to the robot
+  std::string imu_topic;       ///< for the vertical acceleration
+  std::string pressure_topic;
+  bool strongest_echo = false;  ///< of MultiEchoLaserScan; false: the first
 };
 
 /// What a reader met so far. Everything skipped is counted here and nowhere else.
@@ -55,7 +62,7 @@ class LogReader {
   virtual double Progress() const = 0;
 };
 
-/// Opens a log by its content (CARMEN text, plain or gzip).
+/// Opens a log by its content (CARMEN text, plain or gzip; ROS 1 bag).
 /// Throws InputError when it cannot be read as a log at all: no such file, a directory, empty,
 /// binary.
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogOptions& options);

@@ -12,11 +12,11 @@
 // A clock that jumps forward for good is believed: a robot may have paused.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/sensor/observation.hpp"
@@ -25,12 +25,20 @@ namespace masked_mapper {
 
 class StampMender {
  public:
-  /// The next observation as the log has it.
-  void Add(Observation observation);
+  /// The next observation as the log has it. Observations of one stream come in the order in which
+  /// they were taken; a stream is one kind of reading of one sensor.
+  void Add(Observation observation, std::size_t stream);
+  /// One sensor per kind.
+  void Add(Observation observation) {
+    const std::size_t kind = observation.index();
+    Add(std::move(observation), kind);
+  }
   /// No more will come: everything held back becomes ready.
   void Finish();
   /// The next observation that is ready; stamps never decrease from one to the next.
   std::optional<Observation> Next();
+  /// Of the observation that Next() gave last.
+  std::size_t last_stream() const { return last_stream_; }
 
   /// Stamps mended, and changes of the clock.
   std::uint64_t jumps() const { return jumps_; }
@@ -38,19 +46,23 @@ class StampMender {
   std::uint64_t reordered() const { return reordered_; }
 
  private:
-  static constexpr std::size_t kKinds = std::variant_size_v<Observation>;
-
   struct Queued {
     double stamp = 0.0;
     std::uint64_t sequence = 0;
+    std::size_t stream = 0;
+    Observation observation;
+  };
+  struct Undecided {
+    std::size_t stream = 0;
     Observation observation;
   };
 
-  bool FitsAfter(double stamp, std::size_t kind) const;
-  bool TryWrap(double raw_stamp, std::size_t kind);
+  double NewestOf(std::size_t stream) const;
+  bool FitsAfter(double stamp, std::size_t stream) const;
+  bool TryWrap(double raw_stamp, std::size_t stream);
   bool ConfirmsNewClock(double raw_stamp) const;
-  void Accept(Observation observation, double stamp);
-  void Hold(Observation observation);
+  void Accept(Observation observation, std::size_t stream, double stamp);
+  void Hold(Observation observation, std::size_t stream);
   void HoldUndecided();
   void AdoptNewClock();
 
@@ -58,21 +70,16 @@ class StampMender {
   double offset_before_ = 0.0;  ///< s, for stragglers from before that
   bool has_stamp_ = false;
   double newest_ = 0.0;  ///< s, the latest stamp accepted
-  std::array<double, kKinds> newest_of_kind_ = MakeUnset();
-  double typical_step_ = 0.0;           ///< s, the last step forward between observations
-  std::vector<Observation> undecided_;  ///< far off the time line, all after each other
-  std::vector<Queued> heap_;            ///< earliest on top
+  std::map<std::size_t, double> newest_of_stream_;
+  double typical_step_ = 0.0;         ///< s, the last step forward between observations
+  std::vector<Undecided> undecided_;  ///< far off the time line, all after each other
+  std::vector<Queued> heap_;          ///< earliest on top
   std::uint64_t sequence_ = 0;
+  std::size_t last_stream_ = 0;
   bool finished_ = false;
   double last_out_ = -std::numeric_limits<double>::infinity();
   std::uint64_t jumps_ = 0;
   std::uint64_t reordered_ = 0;
-
-  static std::array<double, kKinds> MakeUnset() {
-    std::array<double, kKinds> stamps{};
-    stamps.fill(-std::numeric_limits<double>::infinity());
-    return stamps;
-  }
 };
 
 }  // namespace masked_mapper

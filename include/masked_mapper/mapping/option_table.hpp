@@ -23,7 +23,7 @@ struct Choice {
 
 struct OptionEntry {
   std::string key;  ///< the path of the field in Options: `matcher.min_score`
-  std::variant<double*, int*, std::size_t*, bool*, Choice> field;
+  std::variant<double*, int*, std::size_t*, bool*, std::string*, Choice> field;
   double min = 0.0;  ///< smallest and largest value allowed; of numbers alone
   double max = 0.0;
   std::string help;  ///< unit and meaning, one line

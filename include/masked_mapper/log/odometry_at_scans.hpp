@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Gives each scan the odometry at its own stamp, for logs whose scans come without: read between
+// the odometry before and after it (Interpolate). Scans wait for the odometry behind them, but not
+// long.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+class OdometryAtScans {
+ public:
+  /// In order of stamps. `stream` is handed through.
+  void Add(Observation observation, std::size_t stream);
+  /// No more will come.
+  void Finish() { finished_ = true; }
+  /// The next observation, in the order in which they were added.
+  std::optional<std::pair<Observation, std::size_t>> Next();
+
+ private:
+  bool Complete(LaserScan* scan);
+
+  std::deque<std::pair<Observation, std::size_t>> waiting_;
+  std::deque<OdometryReading> readings_;  ///< the last before the first waiting scan, and all after
+  double newest_ = 0.0;                   ///< s
+  bool finished_ = false;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/log/odometry_at_scans.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace masked_mapper {
+namespace {
+
+LaserScan Scan(double stamp) {
+  LaserScan scan;
+  scan.stamp = stamp;
+  return scan;
+}
+
+OdometryReading Odometry(double stamp) { return {stamp, {stamp, 2.0 * stamp, 0.0}}; }
+
+std::vector<Observation> RunThrough(const std::vector<Observation>& observations) {
+  OdometryAtScans at_scans;
+  std::vector<Observation> result;
+  for (const Observation& observation : observations) {
+    at_scans.Add(observation, 0);
+    while (auto next = at_scans.Next()) result.push_back(next->first);
+  }
+  at_scans.Finish();
+  while (auto next = at_scans.Next()) result.push_back(next->first);
+  EXPECT_EQ(result.size(), observations.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    EXPECT_EQ(Stamp(result[i]), Stamp(observations[i]));
+  return result;
+}
+
+TEST(OdometryAtScansTest, ReadsBetweenNeighbours) {
+  const auto result = RunThrough({Odometry(1.0), Scan(1.25), Scan(1.5), Odometry(2.0), Scan(2.0)});
+  EXPECT_NEAR(std::get<LaserScan>(result[1]).T_odom_robot->x, 1.25, 1e-12);
+  EXPECT_NEAR(std::get<LaserScan>(result[2]).T_odom_robot->y, 3.0, 1e-12);
+  EXPECT_NEAR(std::get<LaserScan>(result[4]).T_odom_robot->x, 2.0, 1e-12);
+}
+
+TEST(OdometryAtScansTest, HoldsBrieflyAtTheEnds) {
+  const auto result =
+      RunThrough({Scan(0.0), Scan(0.8), Odometry(1.0), Odometry(1.1), Scan(1.4), Scan(2.0)});
+  EXPECT_FALSE(std::get<LaserScan>(result[0]).T_odom_robot);
+  EXPECT_EQ(std::get<LaserScan>(result[1]).T_odom_robot->x, 1.0);
+  EXPECT_EQ(std::get<LaserScan>(result[4]).T_odom_robot->x, 1.1);
+  EXPECT_FALSE(std::get<LaserScan>(result[5]).T_odom_robot);
+}
+
+TEST(OdometryAtScansTest, ALongGapSaysNothing) {
+  const auto result = RunThrough({Odometry(1.0), Scan(5.0), Odometry(9.0)});
+  EXPECT_FALSE(std::get<LaserScan>(result[1]).T_odom_robot);
+}
+
+TEST(OdometryAtScansTest, OdometryThatTheScanHasIsKept) {
+  LaserScan scan = Scan(1.5);
+  scan.T_odom_robot = Pose2{7.0, 0.0, 0.0};
+  const auto result = RunThrough({Odometry(1.0), scan, Odometry(2.0)});
+  EXPECT_EQ(std::get<LaserScan>(result[1]).T_odom_robot->x, 7.0);
+}
+
+TEST(OdometryAtScansTest, WithoutOdometryNothingIsHeldBackForEver) {
+  OdometryAtScans at_scans;
+  int out = 0;
+  for (int i = 0; i < 5000; ++i) {
+    at_scans.Add(Scan(0.001 * i), 0);
+    while (at_scans.Next()) ++out;
+  }
+  EXPECT_GT(out, 3900);
+}
+
+}  // namespace
+}  // namespace masked_mapper
