@@ -145,7 +145,10 @@ TableCell LookupTable::CellAt(double x, double y) const {
 
 // `low` is the first cell, `high` the one after the last.
 void LookupTable::Allocate(TableCell low, TableCell high, int levels) {
-  assert(levels >= 1 && levels <= 16);
+  assert(levels >= 1);
+  // A cell of the coarsest level larger than all that is in the table would only make it larger.
+  const std::int64_t extent = std::max(std::int64_t{high.x} - low.x, std::int64_t{high.y} - low.y);
+  while (levels > 1 && (std::int64_t{1} << std::min(levels - 1, 62)) > 2 * extent) --levels;
   levels_.resize(static_cast<std::size_t>(levels));
   // Level 0 begins and ends on a cell of the coarsest level, so that all levels cover the same
   // ground.

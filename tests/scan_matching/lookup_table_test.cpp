@@ -107,6 +107,16 @@ TEST(LookupTable, CoarseLevelsBoundEverySumOfPointAndOffset) {
   }
 }
 
+TEST(LookupTable, HasNoLevelsThatDwarfIt) {
+  LookupTableOptions options;
+  options.levels = 60;
+  const LookupTable table(Points({{0.0, 0.0}, {2.0, 1.0}}), options);
+  EXPECT_GE(table.levels(), 5);
+  EXPECT_LE(table.levels(), 8);
+  EXPECT_LT(table.MemoryBytes(), 200000U);
+  ExpectPyramidIsPlainMaxima(table);
+}
+
 TEST(LookupTable, WithoutPointsEverythingIsZero) {
   const LookupTable table(ScanPoints{}, LookupTableOptions{});
   ExpectPyramidIsPlainMaxima(table);

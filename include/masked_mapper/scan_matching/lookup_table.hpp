@@ -32,7 +32,7 @@ struct LookupTableOptions {
   double max_range_m = 30.0;   ///< m; points farther from the frame's origin are left out
   double join_gap_m =
       0.3;         ///< m; consecutive points nearer than this are joined by a line; 0: never
-  int levels = 5;  ///< of the pyramid, cells included
+  int levels = 5;  ///< of the pyramid, cells included; a small table has fewer
 };
 
 /// A rectangle of a frame, m. Empty unless max > min in both directions.
