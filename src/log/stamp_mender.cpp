@@ -115,11 +115,23 @@ void StampMender::AdoptNewClock() {
     offset_before_ = offset_;
     offset_ = newest_ + typical_step_ - first;
   }
+  if (step > 0.0 && sequence_ < kWitnesses) MoveAllTo(first + offset_);
   newest_ = first + offset_;
   for (Undecided& witness : witnesses) {
     const double stamp = Stamp(witness.observation) + offset_;
     Accept(std::move(witness.observation), witness.stream, stamp);
   }
+}
+
+/// The log began with a few stamps that nothing agrees with.
+void StampMender::MoveAllTo(double stamp) {
+  for (Queued& queued : heap_) {
+    queued.stamp = stamp;
+    SetStamp(&queued.observation, stamp);
+    newest_of_stream_[queued.stream] = stamp;
+    ++jumps_;
+  }
+  std::make_heap(heap_.begin(), heap_.end(), kLaterOnTopLast);
 }
 
 void StampMender::Finish() {

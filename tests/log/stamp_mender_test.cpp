@@ -108,11 +108,19 @@ TEST(StampMenderTest, GoesOnWhenTheClockIsSetBack) {
 
 TEST(StampMenderTest, BelievesAPause) {
   StampMender mender;
-  ExpectStamps(
-      Mended({Odometry(10.0), Odometry(10.1), Odometry(5000.0), Odometry(5000.1), Odometry(5000.2)},
-             &mender),
-      {10.0, 10.1, 5000.0, 5000.1, 5000.2});
+  ExpectStamps(Mended({Odometry(9.9), Odometry(10.0), Odometry(10.1), Odometry(5000.0),
+                       Odometry(5000.1), Odometry(5000.2)},
+                      &mender),
+               {9.9, 10.0, 10.1, 5000.0, 5000.1, 5000.2});
   EXPECT_EQ(mender.jumps(), 0U);
+}
+
+TEST(StampMenderTest, WrongStampsAtTheVeryBeginningAreMovedToTheRest) {
+  StampMender mender;
+  ExpectStamps(
+      Mended({Odometry(0.0), Odometry(1e9), Odometry(1e9 + 0.1), Odometry(1e9 + 0.2)}, &mender),
+      {1e9, 1e9, 1e9 + 0.1, 1e9 + 0.2});
+  EXPECT_EQ(mender.jumps(), 1U);
 }
 
 TEST(StampMenderTest, KeepsTheOrderOfOneKindAndLosesNothing) {

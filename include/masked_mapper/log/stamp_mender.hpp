@@ -65,6 +65,7 @@ class StampMender {
   void Hold(Observation observation, std::size_t stream);
   void HoldUndecided();
   void AdoptNewClock();
+  void MoveAllTo(double stamp);
 
   double offset_ = 0.0;         ///< s, added to the log's stamps since the clock last changed
   double offset_before_ = 0.0;  ///< s, for stragglers from before that
