@@ -39,7 +39,7 @@ Eigen::Vector2d PositionOf(const Building& building, const Landing& landing) {
   return building.floors[landing.floor].way_points[landing.way_point].position;
 }
 
-void CheckFloor(const Building& building, const Floor& floor) {
+void CheckFloor(const Building& building, const FloorPlan& floor) {
   const std::string where = "floor " + floor.label + ": ";
   std::set<std::string> names;
   for (const WayPoint& way_point : floor.way_points) {
@@ -131,7 +131,8 @@ void CheckTour(const Building& building) {
 /// Every way-point that a tour must come to can be reached from the start, over all floors.
 void CheckReach(const Building& building) {
   std::vector<std::vector<bool>> reached;
-  for (const Floor& floor : building.floors) reached.emplace_back(floor.way_points.size(), false);
+  for (const FloorPlan& floor : building.floors)
+    reached.emplace_back(floor.way_points.size(), false);
   std::vector<Landing> open{{building.usual_tour.start_floor, building.usual_tour.start_way_point}};
   const auto reach = [&](const Landing& landing) {
     if (reached[landing.floor][landing.way_point]) return;
@@ -160,7 +161,7 @@ void CheckReach(const Building& building) {
     }
   }
   for (std::size_t f = 0; f < building.floors.size(); ++f) {
-    const Floor& floor = building.floors[f];
+    const FloorPlan& floor = building.floors[f];
     for (const Passage& passage : floor.passages) {
       if (passage.must_visit && !reached[f][passage.from]) {
         Fail(building, "floor " + floor.label + ": way-point " +
@@ -173,7 +174,7 @@ void CheckReach(const Building& building) {
 
 void CheckWays(const Building& building, double clearance) {
   for (std::size_t f = 0; f < building.floors.size(); ++f) {
-    const Floor& floor = building.floors[f];
+    const FloorPlan& floor = building.floors[f];
     const SegmentIndex index(StandingSegments(building, f));
     const auto check = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                            const std::string& way) {
@@ -275,7 +276,7 @@ std::pair<std::vector<Eigen::Vector2d>, std::vector<Eigen::Vector2d>> StairsHalv
   return {lower, upper};
 }
 
-Bounds BoundsOf(const Floor& floor) {
+Bounds BoundsOf(const FloorPlan& floor) {
   std::vector<Eigen::Vector2d> points;
   for (const Segment& segment : floor.segments) {
     points.push_back(segment.a);
@@ -292,7 +293,7 @@ Bounds BoundsOf(const Floor& floor) {
   return bounds;
 }
 
-double CorridorLength(const Floor& floor) {
+double CorridorLength(const FloorPlan& floor) {
   double length = 0.0;
   for (const Passage& passage : floor.passages) {
     if (!passage.must_visit) continue;
@@ -315,7 +316,7 @@ void CheckBuilding(const Building& building, double clearance) {
   if (building.floors.empty()) Fail(building, "it has no floor");
   std::set<std::string> labels;
   double last = -kMaxCoordinate;
-  for (const Floor& floor : building.floors) {
+  for (const FloorPlan& floor : building.floors) {
     if (!IsName(floor.label) || floor.label == "-" || !labels.insert(floor.label).second) {
       Fail(building, "floor label '" + floor.label + "' is taken or not allowed");
     }

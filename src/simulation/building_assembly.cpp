@@ -30,7 +30,7 @@ std::vector<Eigen::Vector2d> StairwellWay(const StairwellPlan& plan) {
           plan.T_building_mouth * Eigen::Vector2d(x, y)};
 }
 
-std::size_t NearestWayPoint(const Floor& floor, const Eigen::Vector2d& position) {
+std::size_t NearestWayPoint(const FloorPlan& floor, const Eigen::Vector2d& position) {
   assert(!floor.way_points.empty());
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < floor.way_points.size(); ++i) {

@@ -111,12 +111,12 @@ class BuildingReader {
     if (!fits) Fail(std::string("expected '") + form + "'");
   }
 
-  Floor& OnFloor() {
+  FloorPlan& OnFloor() {
     if (building_.floors.empty()) Fail("'" + words_[0] + "' before the first 'floor'");
     return building_.floors.back();
   }
 
-  std::size_t WayPointCalled(const Floor& floor, const std::string& name) const {
+  std::size_t WayPointCalled(const FloorPlan& floor, const std::string& name) const {
     const auto found =
         std::find_if(floor.way_points.begin(), floor.way_points.end(),
                      [&](const WayPoint& way_point) { return way_point.name == name; });
@@ -128,7 +128,7 @@ class BuildingReader {
 
   std::size_t FloorCalled(const std::string& label) const {
     const auto found = std::find_if(building_.floors.begin(), building_.floors.end(),
-                                    [&](const Floor& floor) { return floor.label == label; });
+                                    [&](const FloorPlan& floor) { return floor.label == label; });
     if (found == building_.floors.end()) Fail("there is no floor '" + label + "'");
     return static_cast<std::size_t>(found - building_.floors.begin());
   }
@@ -166,7 +166,7 @@ class BuildingReader {
   void ReadFloor() {
     Expect(words_.size() == 3, "floor LABEL ELEVATION");
     if (building_.floors.size() >= kMaxFloors) Fail("more than 1000 floors");
-    Floor floor;
+    FloorPlan floor;
     floor.label = words_[1];
     floor.elevation = Number(2);
     building_.floors.push_back(floor);
@@ -203,14 +203,14 @@ class BuildingReader {
 
   void ReadPoint() {
     Expect(words_.size() == 4, "point NAME X Y");
-    Floor& floor = OnFloor();
+    FloorPlan& floor = OnFloor();
     if (floor.way_points.size() >= kMaxWayPoints) Fail("more than 5000 points on a floor");
     floor.way_points.push_back({words_[1], {Number(2), Number(3)}});
   }
 
   void ReadPassages(bool must_visit) {
     Expect(words_.size() >= 3, must_visit ? "corridor POINT POINT ..." : "way POINT POINT ...");
-    Floor& floor = OnFloor();
+    FloorPlan& floor = OnFloor();
     for (std::size_t w = 2; w < words_.size(); ++w) {
       if (floor.passages.size() >= kMaxPassages) Fail("more than 20000 passages on a floor");
       floor.passages.push_back(
@@ -318,7 +318,7 @@ class BuildingReader {
       return building_.floors[a].elevation < building_.floors[b].elevation;
     });
     std::vector<std::size_t> place(order.size());
-    std::vector<Floor> floors;
+    std::vector<FloorPlan> floors;
     for (std::size_t i = 0; i < order.size(); ++i) {
       place[order[i]] = i;
       floors.push_back(std::move(building_.floors[order[i]]));
@@ -384,7 +384,7 @@ std::string WriteBuilding(const Building& building) {
     text += "\n";
   }
   for (std::size_t f = 0; f < building.floors.size(); ++f) {
-    const Floor& floor = building.floors[f];
+    const FloorPlan& floor = building.floors[f];
     text += "\nfloor " + floor.label;
     Append(text, floor.elevation);
     text += "\n";
@@ -421,7 +421,7 @@ std::string WriteBuilding(const Building& building) {
     }
   }
   const UsualTour& tour = building.usual_tour;
-  const Floor& start = building.floors[tour.start_floor];
+  const FloorPlan& start = building.floors[tour.start_floor];
   text += "\nstart " + start.label + " " + start.way_points[tour.start_way_point].name + "\n";
   if (!tour.visits.empty()) {
     text += "visit";

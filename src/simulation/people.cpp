@@ -21,7 +21,7 @@ People::People(const Building& building, const PeopleOptions& options, std::uint
 void People::Populate(std::size_t floor) {
   floor_ = floor;
   persons_.clear();
-  const Floor& plan = building_.floors[floor];
+  const FloorPlan& plan = building_.floors[floor];
   neighbours_.assign(plan.way_points.size(), {});
   double length = 0.0;
   for (const Passage& passage : plan.passages) {
@@ -58,7 +58,7 @@ void People::ChooseWay(Person& person) {
 }
 
 void People::Advance(Person& person, double seconds) {
-  const Floor& plan = building_.floors[floor_];
+  const FloorPlan& plan = building_.floors[floor_];
   // A way may be shorter than a step of time; the count bounds ways of no length.
   for (int ways = 0; ways < 8 && seconds > 0.0; ++ways) {
     if (person.standing > 0.0) {
@@ -85,7 +85,7 @@ std::vector<Leg> People::LegsAt(double time, std::size_t floor, const Eigen::Vec
   }
   time_ = time;
   std::vector<Leg> legs;
-  const Floor& plan = building_.floors[floor];
+  const FloorPlan& plan = building_.floors[floor];
   for (const Person& person : persons_) {
     const Eigen::Vector2d& from = plan.way_points[person.from].position;
     const Eigen::Vector2d way = plan.way_points[person.to].position - from;

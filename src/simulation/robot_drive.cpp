@@ -70,7 +70,7 @@ class DriveBuilder {
   void Build(const Tour& tour) {
     const TourLeg& first = tour.legs.front();
     floor_ = first.floor;
-    const Floor& floor = building_.floors[floor_];
+    const FloorPlan& floor = building_.floors[floor_];
     const Eigen::Vector2d start = floor.way_points[first.way_points.front()].position;
     pose_ = {start.x(), start.y(), 0.0};
     if (first.way_points.size() > 1) {
@@ -147,7 +147,7 @@ class DriveBuilder {
 
   /// The points of a leg, off the way-points and off the middle of the ways by what is free there.
   std::vector<Eigen::Vector2d> PathOf(const TourLeg& leg) {
-    const Floor& floor = building_.floors[leg.floor];
+    const FloorPlan& floor = building_.floors[leg.floor];
     const std::vector<double>& free = free_[leg.floor];
     const auto free_between = [&](std::size_t a, std::size_t b) {
       double most = 0.0;

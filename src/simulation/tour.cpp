@@ -25,7 +25,7 @@ struct Link {
 };
 using Links = std::vector<std::vector<Link>>;  // per way-point
 
-Links LinksOf(const Floor& floor) {
+Links LinksOf(const FloorPlan& floor) {
   Links links(floor.way_points.size());
   for (std::size_t p = 0; p < floor.passages.size(); ++p) {
     const Passage& passage = floor.passages[p];
@@ -119,7 +119,7 @@ class TourBuilder {
  public:
   TourBuilder(const Building& building, const TourOptions& options)
       : building_(building), options_(options), random_(options.seed, "tour") {
-    for (const Floor& floor : building.floors) {
+    for (const FloorPlan& floor : building.floors) {
       links_.push_back(LinksOf(floor));
       visited_.emplace_back(floor.passages.size(), false);
     }
@@ -329,7 +329,7 @@ class TourBuilder {
 
   /// The passages of this floor to drive: those that must be and are not yet, or all of them again.
   std::vector<bool> Wanted(bool again) const {
-    const Floor& floor = building_.floors[here_.floor];
+    const FloorPlan& floor = building_.floors[here_.floor];
     const ShortestWays ways(links_[here_.floor], here_.way_point, {});
     std::vector<bool> wanted(floor.passages.size());
     for (std::size_t p = 0; p < wanted.size(); ++p) {
@@ -345,7 +345,7 @@ class TourBuilder {
   /// best).
   void Cover(const std::vector<bool>& wanted, std::size_t end, double budget) {
     const Links& links = links_[here_.floor];
-    const Floor& floor = building_.floors[here_.floor];
+    const FloorPlan& floor = building_.floors[here_.floor];
     std::vector<Link> edges;  // `to` is one end; the passage knows both
     const auto add = [&](std::size_t passage) {
       const Eigen::Vector2d& a = floor.way_points[floor.passages[passage].from].position;
@@ -387,7 +387,7 @@ class TourBuilder {
 
   /// Passages that join the wanted ones, the place here and `end` to one connected whole.
   std::vector<std::size_t> Joints(const std::vector<bool>& wanted, std::size_t end) const {
-    const Floor& floor = building_.floors[here_.floor];
+    const FloorPlan& floor = building_.floors[here_.floor];
     const Links& links = links_[here_.floor];
     std::vector<std::size_t> joints;
     std::vector<bool> in_use = wanted;
@@ -426,7 +426,7 @@ class TourBuilder {
   /// Hierholzer's walk over all edges, beginning here; which way is taken at a crossing is drawn,
   /// turning round on the spot only where there is nothing else.
   std::vector<Link> EulerWalk(const std::vector<Link>& edges) {
-    const Floor& floor = building_.floors[here_.floor];
+    const FloorPlan& floor = building_.floors[here_.floor];
     std::vector<std::vector<std::size_t>> at(links_[here_.floor].size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
       at[floor.passages[edges[e].passage].from].push_back(e);
@@ -542,7 +542,7 @@ Tour PlanTour(const Building& building, const TourOptions& options) {
 double TourLength(const Building& building, const Tour& tour) {
   double length = 0.0;
   for (const TourLeg& leg : tour.legs) {
-    const Floor& floor = building.floors[leg.floor];
+    const FloorPlan& floor = building.floors[leg.floor];
     for (std::size_t i = 1; i < leg.way_points.size(); ++i) {
       length += (floor.way_points[leg.way_points[i]].position -
                  floor.way_points[leg.way_points[i - 1]].position)

@@ -3,6 +3,8 @@
 // linter leaves out has its reason.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "house/source_tree.hpp"
 
 namespace masked_mapper::house {
@@ -64,6 +66,22 @@ TEST(Files, NoRoomForLeftovers) {
           << file << ": a helper lives with its user";
     }
   }
+}
+
+/// Two types of one name in one namespace make one program of parts that disagree, and no compiler
+/// says so.
+TEST(Files, EveryTypeHasItsOwnName) {
+  const std::regex definition(
+      R"((?:^|\n)(?:struct|class|enum class) (\w+)(?: final)?(?: :[^;{]*)? \{)");
+  std::map<std::string, fs::path> defined_in;
+  for (const fs::path& file : CppFiles({"include"})) {
+    const std::string text = ReadAll(Root() / file);
+    for (std::sregex_iterator it(text.begin(), text.end(), definition), end; it != end; ++it) {
+      const auto [known, is_new] = defined_in.emplace((*it)[1], file);
+      EXPECT_TRUE(is_new) << (*it)[1] << " is defined in " << known->second << " and " << file;
+    }
+  }
+  EXPECT_GT(defined_in.size(), 40U);
 }
 
 TEST(Files, EveryLintCheckLeftOutHasItsReason) {

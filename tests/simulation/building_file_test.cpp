@@ -74,8 +74,8 @@ TEST(BuildingFile, WritesWhatItReads) {
     const Building again = Read(text);
     ASSERT_EQ(again.floors.size(), building.floors.size());
     for (std::size_t f = 0; f < building.floors.size(); ++f) {
-      const Floor& a = building.floors[f];
-      const Floor& b = again.floors[f];
+      const FloorPlan& a = building.floors[f];
+      const FloorPlan& b = again.floors[f];
       EXPECT_EQ(a.label, b.label);
       EXPECT_EQ(a.elevation, b.elevation);
       ASSERT_EQ(a.segments.size(), b.segments.size());

@@ -23,7 +23,7 @@ TEST(BuildingPlans, CampusHasThePapersSize) {
   ASSERT_EQ(campus.floors.size(), 4U);
   double area = 0.0;
   double corridors = 0.0;
-  for (const Floor& floor : campus.floors) {
+  for (const FloorPlan& floor : campus.floors) {
     area += BoundsOf(floor).Area();
     corridors += CorridorLength(floor);
   }
@@ -37,7 +37,7 @@ TEST(BuildingPlans, CampusHasThePapersSize) {
 TEST(BuildingPlans, TowersFloorsAreTheSame) {
   const Building tower = TowerBuilding();
   ASSERT_EQ(tower.floors.size(), 10U);
-  for (const Floor& floor : tower.floors) {
+  for (const FloorPlan& floor : tower.floors) {
     ASSERT_EQ(floor.segments.size(), tower.floors[0].segments.size());
     for (std::size_t i = 0; i < floor.segments.size(); ++i) {
       EXPECT_EQ(floor.segments[i].a, tower.floors[0].segments[i].a);
@@ -47,7 +47,7 @@ TEST(BuildingPlans, TowersFloorsAreTheSame) {
 }
 
 TEST(BuildingPlans, CorridorsAreBlank) {
-  for (const Floor& floor : CorridorsBuilding().floors) {
+  for (const FloorPlan& floor : CorridorsBuilding().floors) {
     for (const Segment& segment : floor.segments) EXPECT_EQ(segment.surface, Surface::kWall);
   }
 }

@@ -14,7 +14,7 @@ namespace {
 Building OneCorridor() {
   Building building;
   building.name = "small";
-  Floor floor;
+  FloorPlan floor;
   floor.label = "0";
   floor.segments = {{{-1.0, -1.0}, {11.0, -1.0}, Surface::kWall},
                     {{-1.0, 1.0}, {11.0, 1.0}, Surface::kWall}};

@@ -26,7 +26,7 @@ TEST(FloorPlanner, JoinsCorridorsWhereTheyMeet) {
   blank.clutter = 0.0;
   planner.AddCorridor({0.0, 0.0}, {20.0, 0.0}, blank);
   planner.AddCorridor({10.0, -5.0}, {10.0, 5.0}, blank);
-  const Floor floor = planner.Plan("0", 0.0).floor;
+  const FloorPlan floor = planner.Plan("0", 0.0).floor;
   EXPECT_EQ(floor.way_points.size(), 5U);  // a crossing and four dead ends
   EXPECT_EQ(floor.passages.size(), 4U);
   const SegmentIndex index(floor.segments);
@@ -36,7 +36,7 @@ TEST(FloorPlanner, JoinsCorridorsWhereTheyMeet) {
 
 TEST(FloorPlanner, EveryWayIsFree) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Floor floor = Ring(seed).Plan("0", 0.0).floor;
+    const FloorPlan floor = Ring(seed).Plan("0", 0.0).floor;
     const SegmentIndex index(floor.segments);
     for (const Passage& passage : floor.passages) {
       EXPECT_GE(index.Clearance(floor.way_points[passage.from].position,
@@ -51,7 +51,7 @@ TEST(FloorPlanner, WallsCloseAroundTheWays) {
   // From the corridors nothing is seen that is farther than the plan is wide: no leak.
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     FloorPlanner planner = Ring(seed);
-    const Floor floor = planner.Plan("0", 0.0).floor;
+    const FloorPlan floor = planner.Plan("0", 0.0).floor;
     const SegmentIndex index(floor.segments);
     for (const WayPoint& way_point : floor.way_points) {
       for (int beam = 0; beam < 720; ++beam) {
@@ -64,9 +64,9 @@ TEST(FloorPlanner, WallsCloseAroundTheWays) {
 }
 
 TEST(FloorPlanner, SameSeedSameFloor) {
-  const Floor a = Ring(4).Plan("0", 0.0).floor;
-  const Floor b = Ring(4).Plan("0", 0.0).floor;
-  const Floor c = Ring(5).Plan("0", 0.0).floor;
+  const FloorPlan a = Ring(4).Plan("0", 0.0).floor;
+  const FloorPlan b = Ring(4).Plan("0", 0.0).floor;
+  const FloorPlan c = Ring(5).Plan("0", 0.0).floor;
   ASSERT_EQ(a.segments.size(), b.segments.size());
   for (std::size_t i = 0; i < a.segments.size(); ++i) EXPECT_EQ(a.segments[i].a, b.segments[i].a);
   EXPECT_NE(a.segments.size(), c.segments.size());

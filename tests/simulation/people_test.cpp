@@ -10,7 +10,7 @@ namespace {
 
 TEST(People, WalkAlongTheWaysAndKeepFromTheRobot) {
   const Building building = CorridorsBuilding();
-  const Floor& floor = building.floors[0];
+  const FloorPlan& floor = building.floors[0];
   PeopleOptions options;
   options.per_kilometre = 100.0;
   People people(building, options, 1);

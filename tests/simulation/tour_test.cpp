@@ -127,7 +127,7 @@ TEST(Tour, SeedsDiffer) {
 TEST(Tour, ADeadEndIsDrivenThereAndBack) {
   Building building;
   building.name = "stub";
-  Floor floor;
+  FloorPlan floor;
   floor.label = "0";
   floor.way_points = {{"a", {0.0, 0.0}}, {"b", {10.0, 0.0}}};
   floor.passages = {{0, 1, true}};

@@ -35,7 +35,7 @@ struct Passage {
   bool must_visit = true;  ///< corridors are visited by every tour; other ways only when of use
 };
 
-struct Floor {
+struct FloorPlan {
   std::string label;
   double elevation = 0.0;         ///< m
   std::vector<Segment> segments;  ///< without the cabs of elevators
@@ -81,7 +81,7 @@ struct UsualTour {
 
 struct Building {
   std::string name;
-  std::vector<Floor> floors;  ///< by elevation, rising
+  std::vector<FloorPlan> floors;  ///< by elevation, rising
   std::vector<Elevator> elevators;
   std::vector<Stairs> stairs;
   UsualTour usual_tour;
@@ -108,10 +108,10 @@ struct Bounds {
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
   double Area() const { return (high.x() - low.x()) * (high.y() - low.y()); }
 };
-Bounds BoundsOf(const Floor& floor);
+Bounds BoundsOf(const FloorPlan& floor);
 
 /// Metres of passages that a tour must visit.
-double CorridorLength(const Floor& floor);
+double CorridorLength(const FloorPlan& floor);
 
 /// The distance of a point from a segment, metres.
 double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,

@@ -17,6 +17,6 @@ void AddFloor(Building& building, const FloorPlanner::Planned& planned);
 std::vector<Eigen::Vector2d> StairwellWay(const StairwellPlan& plan);
 
 /// The way-point of a floor that is nearest to a position.
-std::size_t NearestWayPoint(const Floor& floor, const Eigen::Vector2d& position);
+std::size_t NearestWayPoint(const FloorPlan& floor, const Eigen::Vector2d& position);
 
 }  // namespace masked_mapper

@@ -66,7 +66,7 @@ class FloorPlanner {
   void AddStairwell(std::size_t stairs, const StairwellPlan& plan, bool lower);
 
   struct Planned {
-    Floor floor;
+    FloorPlan floor;
     std::vector<std::pair<std::size_t, std::size_t>> elevator_way_points;  ///< elevator, way-point
     std::vector<std::pair<std::size_t, std::size_t>> stairs_way_points;    ///< stairs, way-point
   };
@@ -133,7 +133,7 @@ class FloorPlanner {
   std::vector<ConvexSpace> spaces_;    ///< free
   std::vector<ConvexSpace> reserved_;  ///< where no room may be put
   std::vector<Room> rooms_;
-  Floor floor_;
+  FloorPlan floor_;
 };
 
 }  // namespace masked_mapper
