@@ -33,9 +33,11 @@ MaskedMapper::MaskedMapper(const std::string& mask, const Options& options,
       matcher_(options.matcher),
       submaps_(options.submaps, options.motion.scans.map, result_),
       validator_(options.validator) {
-  for (const FloorLevel& level : floors.levels) {
+  const std::vector<std::string> names = FloorNames(floors.levels);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const FloorLevel& level = floors.levels[i];
     result_.graph.AddFloor(
-        {level.label, level.elevation, level.elevation_sigma, level.elevation_measured});
+        {names[i], level.elevation, level.elevation_sigma, level.elevation_measured});
   }
 }
 
