@@ -266,6 +266,13 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"matcher.table_memory_mib", &o.matcher.table_memory_mib, 1, 1 << 20,
        "MiB of look-up tables kept"},
 
+      {"matcher.look_elsewhere", &o.matcher.look_elsewhere, 0, 0,
+       "also look for a second place in the window that fits"},
+      {"matcher.elsewhere_m", &o.matcher.elsewhere_m, 0, 100, "m from the match that is elsewhere"},
+      {"matcher.elsewhere_deg", &o.matcher.elsewhere_deg, 0, 180,
+       "deg from the match that is elsewhere"},
+      {"matcher.elsewhere_floor", &o.matcher.elsewhere_floor, 0, 1,
+       "share of the match's score that another place must reach"},
       {"matcher.refine.max_iterations", &o.matcher.refine.max_iterations, 0, 1000,
        "of the climb from the best cell to the maximum"},
       {"matcher.refine.max_shift_m", &o.matcher.refine.max_shift_m, 0, 10,
@@ -308,6 +315,12 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "m^2 + rad^2 of covariance beyond which a loop is no evidence"},
       {"validator.tight_loop_trace", &o.validator.tight_loop_trace, 0, 1e6,
        "m^2 + rad^2 up to which every loop is evidence of its own"},
+      {"validator.max_loose_votes", &o.validator.max_loose_votes, 0, 1000,
+       "votes from looser loops at most"},
+      {"validator.places_needed", &o.validator.places_needed, 1, 1000,
+       "places that must agree before unconfirmed closures enter"},
+      {"validator.place_radius_m", &o.validator.place_radius_m, 0, 1000,
+       "m beyond which two places are two"},
       {"validator.max_contradiction", &o.validator.max_contradiction, 0.01, 1000,
        "distance at which the best validated way forbids a closure"},
       {"validator.max_loops", &o.validator.max_loops, 1, 100000,
@@ -438,14 +451,21 @@ void CheckOptions(const Options& options) {
   }
 }
 
-std::vector<std::pair<std::string, std::string>> OptionValues(const Options& options) {
+std::vector<std::pair<std::string, OptionValue>> OptionValues(const Options& options) {
+  struct {
+    OptionValue operator()(const bool* field) const { return *field; }
+    OptionValue operator()(const double* field) const { return *field; }
+    OptionValue operator()(const int* field) const { return std::int64_t{*field}; }
+    OptionValue operator()(const std::size_t* field) const {
+      return static_cast<std::int64_t>(*field);
+    }
+    OptionValue operator()(const std::string* field) const { return *field; }
+    OptionValue operator()(const Choice& choice) const { return choice.names.at(choice.get()); }
+  } value;
   Options copy = options;
-  std::vector<std::pair<std::string, std::string>> values;
+  std::vector<std::pair<std::string, OptionValue>> values;
   for (const OptionEntry& entry : OptionTable(copy)) {
-    if (entry.key == "threads") continue;
-    const bool is_word = std::holds_alternative<Choice>(entry.field) ||
-                         std::holds_alternative<std::string*>(entry.field);
-    values.emplace_back(entry.key, is_word ? '"' + ValueText(entry) + '"' : ValueText(entry));
+    if (entry.key != "threads") values.emplace_back(entry.key, std::visit(value, entry.field));
   }
   return values;
 }

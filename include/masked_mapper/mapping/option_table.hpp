@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -49,8 +50,9 @@ void SetOption(const std::string& assignment, Options& options);
 /// Options that contradict each other (a least above its most): InputError naming both keys.
 void CheckOptions(const Options& options);
 
-/// Key and value, as a JSON literal, of every option that may change the result: not the number of
-/// threads.
-std::vector<std::pair<std::string, std::string>> OptionValues(const Options& options);
+using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
+
+/// Key and value of every option that may change the result: not the number of threads.
+std::vector<std::pair<std::string, OptionValue>> OptionValues(const Options& options);
 
 }  // namespace masked_mapper
