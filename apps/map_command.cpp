@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// masked_mapper map LOG... -o OUT
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "masked_mapper/export/closing_table.hpp"
+#include "masked_mapper/export/map_export.hpp"
+#include "masked_mapper/export/output_folder.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/configuration.hpp"
+#include "masked_mapper/mapping/map_log.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
+#include "option_flags.hpp"
+#include "progress_bar.hpp"
+
+namespace masked_mapper {
+namespace {
+
+struct MapArguments {
+  std::vector<std::string> logs;
+  std::string out;
+  std::string mask = "openings";
+  OptionFlags options;
+  std::string threads;
+  bool resume = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// What stands in the way of writing to OUT. There is nothing yet to resume from but a start.
+ExistingFolder HowToTreat(const MapArguments& arguments) {
+  const bool is_empty =
+      std::filesystem::is_directory(arguments.out) && std::filesystem::is_empty(arguments.out);
+  if (arguments.resume && is_empty) return ExistingFolder::kReplace;
+  return arguments.force ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
+}
+
+int RunMap(const MapArguments& arguments) {
+  Options options = ReadOptions(arguments.options);
+  if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
+  if (options.threads == 0) {
+    options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  }
+  MakeMask(arguments.mask, options.masks);  // throws before the log is looked at
+  if (arguments.logs.size() > 1) {
+    throw InputError("map takes one log, not " + std::to_string(arguments.logs.size()) +
+                     "; several cannot be joined yet");
+  }
+  // Before the work: an hour of mapping must not end in "exists already".
+  const ExistingFolder existing = HowToTreat(arguments);
+  CheckOutputFolder(arguments.out, existing);
+
+  CatchInterrupts();
+  ProgressBar progress(arguments.quiet);
+  const std::string& log = arguments.logs.front();
+  const MappingResult result = MapLog(log, arguments.mask, options, progress);
+  progress.Stage("writing");
+  OutputFolder folder(arguments.out, existing);
+  ExportOptions export_options{options.grid, options.octree};
+  export_options.grid.threads = options.threads;
+  const Summary summary =
+      WriteMap(result, {log, arguments.mask, OptionValues(options)}, export_options, folder.path());
+  ThrowIfInterrupted();
+  folder.Commit();
+  progress.Finish();
+  if (!arguments.quiet) std::cout << ClosingTable(summary) << "map: " << arguments.out << "\n";
+  return 0;
+}
+
+/// The parser ends the text with a line break of its own.
+std::string OptionListing() {
+  std::string text = ConfigurationText(Options{});
+  text.pop_back();
+  return text;
+}
+
+std::string MaskHelp() {
+  std::string names;
+  for (const std::string& name : RegisteredMasks()) names += (names.empty() ? "" : ", ") + name;
+  return "where scans are worth matching: " + names + "; combined as any(a,b), all(a,b), not(a)";
+}
+
+}  // namespace
+
+void AddMapCommand(CLI::App& program, Run& run) {
+  auto arguments = std::make_shared<MapArguments>();
+  CLI::App* command = program.add_subcommand(
+      "map", "Map a log: CARMEN text (.clf, .log), plain or .gz, with 2D lidar and odometry");
+  command->add_option("LOG", arguments->logs, "the robot's log")->required();
+  command->add_option("-o,--output", arguments->out, "folder to write the map to")
+      ->required()
+      ->type_name("OUT");
+  command->add_option("--mask", arguments->mask, MaskHelp())
+      ->capture_default_str()
+      ->type_name("MASK");
+  AddOptionFlags(*command, arguments->options);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads to use, 0: all; the map is the same with any number")
+      ->type_name("N");
+  command->add_flag("--resume", arguments->resume,
+                    "go on with an unfinished map in OUT; a missing or empty OUT starts afresh");
+  command->add_flag("--force", arguments->force, "replace the map that is in OUT");
+  command->add_flag("--quiet", arguments->quiet, "print errors only");
+  command->add_flag_callback(
+      "--help-options", [] { throw CLI::CallForVersion(OptionListing(), 0); },
+      "list every option of --config and --set, with default, meaning and range");
+  command->footer(
+      "Examples:\n"
+      "  masked_mapper map drive.log.gz -o out\n"
+      "  masked_mapper map drive.log.gz -o out --force --mask 'any(openings,eccentricity)'\n"
+      "  masked_mapper map drive.log.gz -o out --set matcher.min_score=0.5 --set log.max_range=30\n"
+      "\n"
+      "OUT holds building.bt (OctoMap), building.pcd and .ply, floors/*.pgm + .yaml (map_server),\n"
+      "trajectory.tum, graph.g2o, closures.csv and summary.json. Nothing is written before all of\n"
+      "it is, and an OUT that exists is never replaced without --force.");
+  command->callback([arguments, &run] { run = [arguments] { return RunMap(*arguments); }; });
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `map` from outside: what it writes, what it refuses, and what it makes of real life.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "apps/bad_logs.hpp"
+#include "apps/program.hpp"
+#include "apps/ring_log.hpp"
+
+namespace masked_mapper {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Gzipped(const std::string& text) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, text.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+const std::vector<std::string>& Ring() {
+  static const std::vector<std::string> lines = RingLog(1);
+  return lines;
+}
+
+TEST(MapCommand, HelpListsEveryOption) {
+  const Ran help = RunProgram({"map", "--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_TRUE(Contains(help.out, "openings")) << help.out;
+  const Ran options = RunProgram({"map", "--help-options"});
+  EXPECT_EQ(options.code, 0);
+  EXPECT_TRUE(Contains(options.out, "min_score: 0.425"));
+}
+
+TEST(MapCommand, MistypedFlagsMasksAndOptions) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  const std::string log = folder / "ring.log";
+  const std::string out = folder / "out";
+  ExpectUsersFault(folder, {"map", log}, "--output is required");
+  ExpectUsersFault(folder, {"map", "-o", out}, "LOG is required");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--thread", "2"},
+                   "unknown flag `--thread` (did you mean `--threads`?)");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--mask", "openingz"},
+                   "did you mean `openings`?");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--mask", "any(openings"}, "mask expression");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--set", "matcher.min_scor=0.5"},
+                   "did you mean `matcher.min_score`?");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--set", "matcher.min_score=5"},
+                   "matcher.min_score must be 0 to 1");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--set", "nodes.min_edge_length_m=20"},
+                   "must not be above nodes.max_edge_length_m");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--threads", "many"}, "--threads");
+  ExpectUsersFault(folder, {"map", log, "-o", out, "--threads", "-1"}, "--threads");
+}
+
+TEST(MapCommand, ConfigurationsThatAreWrong) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  const auto expect = [&](const std::string& text, const std::string& said) {
+    const std::string file = folder / "my.yaml";
+    WriteText(file, text);
+    ExpectUsersFault(folder, {"map", folder / "ring.log", "-o", folder / "out", "--config", file},
+                     said);
+  };
+  expect("matcher: {min_score: 0.5", "my.yaml:");
+  expect("matcher:\n  min_scor: 0.5\n", "my.yaml:2: unknown option `matcher.min_scor`");
+  expect("matcher:\n  min_score: 7\n", "my.yaml:2: matcher.min_score must be 0 to 1");
+  ExpectUsersFault(
+      folder, {"map", folder / "ring.log", "-o", folder / "out", "--config", folder / "no.yaml"},
+      "no such configuration file");
+}
+
+TEST(MapCommand, LogsThatAreNone) {
+  const ScratchFolder folder;
+  for (const auto& [name, said] : WriteLogsThatAreNone(folder)) {
+    ExpectUsersFault(folder, {"map", folder / name, "-o", folder / "out"}, said);
+  }
+}
+
+TEST(MapCommand, LogsWithoutOneValidScanAreTheUsersFault) {
+  const ScratchFolder folder;
+  WriteText(folder / "odometry.log",
+            "ODOM 0 0 0 0 0 0 1.0 robot 1.0\nODOM 1 0 0 0 0 0 2.0 robot 2.0\n");
+  ExpectUsersFault(folder, {"map", folder / "odometry.log", "-o", folder / "out"}, "odometry.log");
+  WriteText(folder / "broken.log", "FLASER 3 1.0 2.0\nFLASER x\n");
+  ExpectUsersFault(folder, {"map", folder / "broken.log", "-o", folder / "out"}, "broken.log");
+}
+
+TEST(MapCommand, AnExistingOutputIsNotReplacedUnasked) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  const std::string log = folder / "ring.log";
+  const std::string out = folder / "out";
+  fs::create_directory(out);
+  WriteText(out + "/mine.txt", "mine");
+  ExpectUsersFault(folder, {"map", log, "-o", out}, "--force");
+  EXPECT_EQ(RunProgram({"map", log, "-o", out, "--force"}).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/summary.json"));
+  EXPECT_EQ(ReadText(out + "/mine.txt"), "mine");
+  WriteText(folder / "file", "");
+  ExpectUsersFault(folder, {"map", log, "-o", folder / "file", "--force"}, "not a folder");
+}
+
+TEST(MapCommand, ResumeWithoutAnythingToResumeStartsAfresh) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  fs::create_directory(folder / "empty");
+  for (const char* out : {"missing", "empty"}) {
+    const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / out, "--resume"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(folder / out + "/summary.json"));
+  }
+}
+
+TEST(MapCommand, MapWritesTheContract) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log.gz", Gzipped(Joined(RingLog(2))));
+  const std::string out = folder / "out";
+  const Ran ran = RunProgram({"map", folder / "ring.log.gz", "-o", out});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  for (const char* name : {"building.bt", "building.pcd", "building.ply", "floors/0.pcd",
+                           "floors/0.pgm", "floors/0.yaml", "floors/0.g2o", "trajectory.tum",
+                           "nodes.tum", "graph.g2o", "closures.csv", "summary.json"}) {
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+  }
+  EXPECT_EQ(ReadText(out + "/closures.csv")
+                .rfind("t_a,t_b,floor,dx,dy,dtheta,score,maha,votes,state,reason\n", 0),
+            0U);
+  const auto summary = nlohmann::json::parse(ReadText(out + "/summary.json"));
+  EXPECT_EQ(summary.at("log"), folder / "ring.log.gz");
+  EXPECT_EQ(summary.at("mask"), "openings");
+  EXPECT_EQ(summary.at("counts").at("scans"), static_cast<int>(RingDrive(2).size()));
+  EXPECT_EQ(summary.at("options").at("matcher.min_score"), 0.425);
+  EXPECT_EQ(LinesIn(ReadText(out + "/trajectory.tum")), static_cast<long>(RingDrive(2).size()));
+  EXPECT_TRUE(Contains(ran.out, "validated"));  // the closing table
+  EXPECT_TRUE(Contains(ran.err, "mapping"));
+}
+
+TEST(MapCommand, QuietIsSilent) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--quiet"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.out + ran.err, "");
+  const Ran failed = RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--quiet"});
+  EXPECT_EQ(failed.code, 2);
+  EXPECT_EQ(LinesIn(failed.err), 1);
+}
+
+TEST(MapCommand, ATerminalGetsABarAndAPipeDoesNot) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(RingLog(4)));
+  const std::vector<std::string> arguments = {
+      "map", folder / "ring.log", "-o", folder / "out", "--force", "--mask", "always"};
+  const Ran plain = RunProgram(arguments);
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  EXPECT_FALSE(Contains(plain.err, "\r"));
+  RunSettings settings;
+  settings.terminal = true;
+  const Ran seen = RunProgram(arguments, settings);
+  ASSERT_EQ(seen.code, 0) << seen.err;
+  EXPECT_TRUE(Contains(seen.err, "scans/s")) << seen.err;
+}
+
+TEST(MapCommand, TheSameBytesAtAnyNumberOfThreads) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(RingLog(2)));
+  const std::vector<std::vector<std::string>> runs = {
+      {"a"}, {"b"}, {"c", "--threads", "1"}, {"d", "--threads", "2"}};
+  for (const auto& run : runs) {
+    std::vector<std::string> arguments = {"map", folder / "ring.log", "-o", folder / run[0]};
+    arguments.insert(arguments.end(), run.begin() + 1, run.end());
+    const Ran ran = RunProgram(arguments);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "a")) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path name = entry.path().lexically_relative(folder / "a");
+    for (const char* other : {"b", "c", "d"}) {
+      std::string first = ReadText(entry.path());
+      std::string second = ReadText(fs::path(folder / other) / name);
+      if (name == "summary.json") {
+        for (std::string* text : {&first, &second}) {
+          auto json = nlohmann::json::parse(*text);
+          EXPECT_EQ(json.erase("seconds") + json.erase("peak_memory_mib"), 2U);
+          *text = json.dump();
+        }
+      }
+      EXPECT_TRUE(first == second) << name << " differs in " << other;
+    }
+  }
+}
+
+struct LifeCase {
+  const char* name;
+  std::function<std::string(std::vector<std::string>)> spoil;
+  const char* said;  ///< in what the program prints
+};
+void PrintTo(const LifeCase& life, std::ostream* out) { *out << life.name; }
+
+class RealLife : public ::testing::TestWithParam<LifeCase> {};
+
+TEST_P(RealLife, IsSkippedCountedAndSaid) {
+  const ScratchFolder folder;
+  WriteText(folder / "life.log", GetParam().spoil(Ring()));
+  const Ran ran = RunProgram({"map", folder / "life.log", "-o", folder / "out"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(Contains(ran.err, GetParam().said)) << ran.err;
+  EXPECT_TRUE(fs::exists(folder / "out/summary.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    MapCommand, RealLife,
+    ::testing::Values(LifeCase{"CountThatDoesNotMatch",
+                               [](std::vector<std::string> lines) {
+                                 lines[20].replace(0, 10, "FLASER 182");
+                                 return Joined(lines);
+                               },
+                               "1 bad line"},
+                      LifeCase{"NotANumber",
+                               [](std::vector<std::string> lines) {
+                                 lines[20].replace(11, 3, "nan");
+                                 lines[21] = "ODOM nan inf 1e400 0 0 0 104.1 robot 4.1";
+                                 return Joined(lines);
+                               },
+                               "bad line"},
+                      LifeCase{"HugeNumbers",
+                               [](std::vector<std::string> lines) {
+                                 lines[20] = "FLASER 99999999999 1 2 3";
+                                 lines[21] = "ODOM 1e300 -1e300 1e300 0 0 0 104.1 robot 4.1";
+                                 return Joined(lines);
+                               },
+                               "bad line"},
+                      LifeCase{"CutLastLine",
+                               [](const std::vector<std::string>& lines) {
+                                 const std::string text = Joined(lines);
+                                 return text.substr(0, text.size() - 300);
+                               },
+                               "cut"},
+                      LifeCase{"CutInsideGzip",
+                               [](const std::vector<std::string>& lines) {
+                                 const std::string packed = Gzipped(Joined(lines));
+                                 return packed.substr(0, packed.size() * 2 / 3);
+                               },
+                               "cut"},
+                      LifeCase{"StampsThatJump",
+                               [](std::vector<std::string> lines) {
+                                 for (std::size_t i = lines.size() / 2; i < lines.size(); ++i) {
+                                   const std::size_t host = lines[i].rfind(" robot");
+                                   const std::size_t stamp = lines[i].rfind(' ', host - 1);
+                                   lines[i].replace(
+                                       stamp, host - stamp,
+                                       " " + std::to_string(5.0 + 0.2 * static_cast<double>(i)));
+                                 }
+                                 return Joined(lines);
+                               },
+                               "stamp"}),
+    [](const ::testing::TestParamInfo<LifeCase>& info) { return info.param.name; });
+
+TEST(MapCommand, AFullDiskIsAFailureThatLeavesNothing) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  const std::vector<std::string> before = folder.Listing();
+  for (const rlim_t bytes : {rlim_t{0}, rlim_t{512}, rlim_t{4096}, rlim_t{20000}}) {
+    RunSettings settings;
+    settings.largest_file = bytes;
+    const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / "out"}, settings);
+    EXPECT_EQ(ran.code, 1) << bytes << " bytes: " << ran.err;
+    EXPECT_TRUE(Contains(ran.err, "masked_mapper: ")) << ran.err;
+    EXPECT_EQ(folder.Listing(), before) << bytes << " bytes";
+  }
+}
+
+}  // namespace
+}  // namespace masked_mapper
