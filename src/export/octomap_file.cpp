@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/export/octomap_file.hpp"
 
+// OctoMap prints from its headers in debug builds unless told not to.
+#ifndef OCTOMAP_NODEBUGOUT
+#define OCTOMAP_NODEBUGOUT
+#endif
 #include <octomap/octomap.h>
 
 #include <ostream>

@@ -104,10 +104,12 @@ void CarryOver(const fs::path& replaced, const fs::path& current) {
 
 std::vector<fs::path> MakeParents(const fs::path& folder) {
   std::vector<fs::path> missing;
-  for (fs::path parent = folder.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
+  std::error_code error;
+  // What cannot be looked at is taken as there; making a folder in it then says why it cannot be.
+  for (fs::path parent = folder.parent_path(); !fs::exists(parent, error) && !error;
+       parent = parent.parent_path()) {
     missing.insert(missing.begin(), parent);
   }
-  std::error_code error;
   for (std::size_t i = 0; i < missing.size(); ++i) {
     if (fs::create_directory(missing[i], error) || !error) continue;
     for (std::size_t made = i; made-- > 0;) {
