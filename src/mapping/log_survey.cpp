@@ -27,12 +27,14 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
   log_options.read_ranges = false;
   const std::unique_ptr<LogReader> log = OpenLog(path, log_options);
   LogSurvey survey;
+  FloorTracker floors(options.floors);
   std::optional<Pose2> T_odom_before;
   std::optional<double> stamp_before;
   std::vector<float> travels;
   std::vector<float> turns;
   std::vector<float> periods;
   while (const std::optional<Observation> observation = log->Next()) {
+    floors.Observe(*observation);
     if (std::holds_alternative<OdometryReading>(*observation)) survey.has_odometry = true;
     const auto* scan = std::get_if<LaserScan>(&*observation);
     if (scan == nullptr) continue;
@@ -52,6 +54,9 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
     T_odom_before = scan->T_odom_robot;
   }
   if (survey.scans == 0) throw InputError(path + ": not one valid laser scan in it");
+  survey.floors = floors.Finish();
+  survey.floor_source = floors.source();
+  survey.warnings = floors.warnings();
   survey.median_travel_m = Median(std::move(travels));
   survey.median_turn_rad = Median(std::move(turns));
   survey.median_period_s = Median(std::move(periods));

@@ -42,16 +42,16 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
   Options settled = options;
   settled.matcher.threads = ThreadCount(options.threads);
   double survey_seconds = 0.0;
+  LogSurvey survey;
   {
     const StageTimer timer(survey_seconds);
     progress.Stage("reading");
-    const LogSurvey survey = SurveyLog(path, options);
+    survey = SurveyLog(path, options);
     settled.motion.source = SettleMotionSource(path, options.motion.source, survey);
   }
-  const FloorTimeline floors;
   std::unique_ptr<MaskedMapper> mapper;
   try {
-    mapper = std::make_unique<MaskedMapper>(mask, settled, floors);
+    mapper = std::make_unique<MaskedMapper>(mask, settled, survey.floors);
   } catch (const std::invalid_argument& error) {
     throw InputError(error.what());
   }
@@ -76,6 +76,9 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
   result.log = log->Statistics();
   result.seconds.read = read_seconds;
   result.motion_source = settled.motion.source;
+  for (const std::string& warning : survey.warnings) {
+    result.warnings.push_back(path + ": " + warning);
+  }
   WarnOfTheLog(path, result.log, result);
   for (const std::string& warning : result.warnings) progress.Warn(warning);
   return result;

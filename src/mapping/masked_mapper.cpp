@@ -8,6 +8,7 @@
 
 #include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/mapping/trajectory.hpp"
+#include "masked_mapper/optimization/closure_audit.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -32,9 +33,10 @@ MaskedMapper::MaskedMapper(const std::string& mask, const Options& options,
       mask_(MakeMask(mask, options.masks)),
       matcher_(options.matcher),
       submaps_(options.submaps, options.motion.scans.map, result_),
-      validator_(options.validator) {
+      validator_(options.validator),
+      optimizer_(options.optimizer) {
   const std::vector<std::string> names = FloorNames(floors.levels);
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < floors.levels.size(); ++i) {
     const FloorLevel& level = floors.levels[i];
     result_.graph.AddFloor(
         {names[i], level.elevation, level.elevation_sigma, level.elevation_measured});
@@ -141,7 +143,7 @@ void MaskedMapper::CloseLoops(NodeId new_node) {
   if (validated.empty()) return;
   AddValidated(validated);
   const StageTimer timer(result_.seconds.optimisation);
-  Optimize(options_.optimizer, result_.graph);
+  optimizer_.Update(result_.graph);
 }
 
 std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
@@ -168,8 +170,9 @@ std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
       attempt.reason = "score below the minimum";
     } else {
       attempt.state = ClosureState::kHypothesis;
-      if (options_.motion.source != MotionSource::kOdometry) attempt.T_a_b = RefineMatch(attempt);
-      if (IsAmbiguous(attempt.T_a_b.covariance, options_.ambiguity)) {
+      if (options_.motion.source != MotionSource::kOdometry && !RefineMatch(attempt)) {
+        attempt.reason = "does not fit the surroundings of the older node";
+      } else if (IsAmbiguous(attempt.T_a_b.covariance, options_.ambiguity)) {
         attempt.reason = "the place looks alike along a line";
       } else {
         attempt.reason = "too few votes";
@@ -186,19 +189,23 @@ std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
   return matches;
 }
 
-UncertainPose2 MaskedMapper::RefineMatch(const ClosureAttempt& attempt) {
+bool MaskedMapper::RefineMatch(ClosureAttempt& attempt) {
   const Node& a = result_.graph.nodes()[static_cast<std::size_t>(attempt.a)];
   const std::optional<SubmapMatch> refined =
       submaps_.Refine(attempt.b, *a.points_in_robot, Inverse(attempt.T_a_b));
-  return refined ? Inverse(refined->T_node_robot) : attempt.T_a_b;
+  if (!refined) return false;
+  attempt.T_a_b = Inverse(refined->T_node_robot);
+  attempt.agreement = refined->inlier_share;
+  return true;
 }
 
 void MaskedMapper::AddValidated(const std::vector<HypothesisId>& validated) {
   for (const HypothesisId id : validated) {
     const Hypothesis& hypothesis = validator_.hypotheses()[static_cast<std::size_t>(id)];
-    result_.graph.AddEdge({hypothesis.a, hypothesis.b, hypothesis.T_a_b, EdgeKind::kClosure});
-    ClosureAttempt& attempt =
-        result_.attempts[attempt_of_hypothesis_[static_cast<std::size_t>(id)]];
+    const EdgeId edge =
+        result_.graph.AddEdge({hypothesis.a, hypothesis.b, hypothesis.T_a_b, EdgeKind::kClosure});
+    attempt_of_edge_[edge] = attempt_of_hypothesis_[static_cast<std::size_t>(id)];
+    ClosureAttempt& attempt = result_.attempts[attempt_of_edge_[edge]];
     attempt.state = ClosureState::kValidated;
     attempt.reason = "enough votes";
   }
@@ -231,11 +238,28 @@ void MaskedMapper::RecordScan(const LaserScan& scan, bool in_transit) {
   }
 }
 
+// With all closures in, those that disagree with the rest go before the map is written.
+void MaskedMapper::Audit() {
+  const StageTimer timer(result_.seconds.optimisation);
+  Optimize(options_.optimizer.solver, result_.graph);
+  const std::vector<EdgeId> wrong =
+      AuditClosures(options_.audit, options_.optimizer.solver, result_.graph);
+  if (wrong.empty()) return;
+  for (auto edge = wrong.rbegin(); edge != wrong.rend(); ++edge) {
+    ClosureAttempt& attempt = result_.attempts[attempt_of_edge_.at(*edge)];
+    attempt.state = ClosureState::kAuditedOut;
+    attempt.reason = "disagrees with the optimised map";
+    result_.graph.RemoveEdge(*edge);
+  }
+  Optimize(options_.optimizer.solver, result_.graph);
+}
+
 MappingResult MaskedMapper::Finish() {
   const std::vector<Hypothesis>& hypotheses = validator_.hypotheses();
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     result_.attempts[attempt_of_hypothesis_[i]].votes = hypotheses[i].votes;
   }
+  Audit();
   BendTrajectory(result_.graph, result_.trajectory);
   return std::move(result_);
 }

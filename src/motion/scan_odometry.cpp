@@ -89,16 +89,18 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
                        options_.match_distance_m * options_.match_distance_m;
   if (is_sure && travelled < options_.match_distance_m &&
       turned < DegToRad(options_.match_angle_deg)) {
+    // The next match answers for this step too: its uncertainty is not counted twice.
+    step.covariance.setZero();
     return step;
   }
   const Eigen::Matrix3d prior = PriorInformation(T_map_matched_, T_matched_robot_);
   const Alignment aligned = AlignFromSeveralGuesses(*points, T_map_robot_, prior);
   inlier_share_ = aligned.inlier_share;
   if (aligned.inlier_share >= options_.lost_inlier_share) {
-    // Scans within one keyframe's distance see the same map with the same errors: a short step is
-    // worth its share of the alignment's covariance, a long one all of it.
-    const double share = std::min(1.0, travelled / options_.keyframe_distance_m +
-                                           turned / DegToRad(options_.keyframe_angle_deg));
+    // Scans against one map err alike: a short step is worth its share of an alignment's covariance,
+    // and all of it only over the way on which the map itself has become another.
+    const double share = std::min(1.0, travelled / options_.decorrelation_distance_m +
+                                           turned / DegToRad(options_.decorrelation_angle_deg));
     const Eigen::Matrix3d covariance_in_map =
         (aligned.information / std::max(share, 1e-3) + prior).inverse();
     T_map_robot_ = aligned.T_map_robot;
@@ -110,7 +112,10 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     step.mean = Between(T_map_last, T_map_robot_);
     step.covariance = rotation * covariance_in_map * rotation.transpose();
     lost_ = 0;
-  } else if (++lost_ >= 5) {
+  } else {
+    step.covariance = T_matched_robot_.covariance;
+  }
+  if (aligned.inlier_share < options_.lost_inlier_share && ++lost_ >= 5) {
     // Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
     map_.reset();
     next_map_.reset();

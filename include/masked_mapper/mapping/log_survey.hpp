@@ -5,8 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/floor_tracker.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 
 namespace masked_mapper {
@@ -17,6 +20,9 @@ struct LogSurvey {
   double median_travel_m = 0.0;  ///< by wheels, from scan to scan, of those that moved
   double median_turn_rad = 0.0;
   double median_period_s = 0.0;
+  FloorTimeline floors;
+  FloorSource floor_source = FloorSource::kNone;  ///< what the floors were found by
+  std::vector<std::string> warnings;
 };
 
 /// Throws InputError when the log cannot be read or holds no scan.

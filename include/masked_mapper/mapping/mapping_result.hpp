@@ -38,6 +38,7 @@ struct ClosureAttempt {
   UncertainPose2 T_a_b;  ///< the match; the guess if there is none
   double score = 0.0;
   double mahalanobis = 0.0;  ///< of the candidate, Eq. 7
+  double agreement = 0.0;  ///< share of a's points that fit the submap of b, 0-1; 0: not looked at
   int votes = 0;
   ClosureState state = ClosureState::kRejectedScore;
   std::string reason;

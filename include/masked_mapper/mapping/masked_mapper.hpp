@@ -2,6 +2,7 @@
 // The masked mapper: Algorithm 1 of the paper, one observation at a time.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "masked_mapper/mapping/submaps.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
@@ -37,8 +39,9 @@ class MaskedMapper {
   NodeId AddNode(double stamp, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
   void CloseLoops(NodeId new_node);
   std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
-  UncertainPose2 RefineMatch(const ClosureAttempt& attempt);
+  bool RefineMatch(ClosureAttempt& attempt);
   void AddValidated(const std::vector<HypothesisId>& validated);
+  void Audit();
   void RecordScan(const LaserScan& scan, bool in_transit);
 
   Options options_;
@@ -48,11 +51,13 @@ class MaskedMapper {
   JointMatcher matcher_;
   Submaps submaps_;
   LoopValidator validator_;
+  PoseGraphOptimizer optimizer_;
   MappingResult result_;
 
   std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered
   bool in_transit_ = false;
   std::vector<std::size_t> attempt_of_hypothesis_;
+  std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
   double travelled_since_kept_m_ = 0.0;
 };
 

@@ -7,7 +7,9 @@
 #include "masked_mapper/loop_closure/validator.hpp"
 #include "masked_mapper/mapping/submap_options.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/motion/floor_tracker.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/optimization/closure_audit.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/octree.hpp"
@@ -33,6 +35,7 @@ struct AmbiguityOptions {
 struct Options {
   LogOptions log;
   MotionOptions motion;
+  FloorOptions floors;
   NodeOptions nodes;
   MaskOptions masks;
   CandidateOptions candidates;
@@ -40,7 +43,8 @@ struct Options {
   SubmapOptions submaps;
   AmbiguityOptions ambiguity;
   ValidatorOptions validator;
-  OptimizerOptions optimizer;
+  UpdateOptions optimizer;
+  AuditOptions audit;
   GridOptions grid;
   OctreeOptions octree;
   int threads = 0;  ///< 0: as many as the machine has
