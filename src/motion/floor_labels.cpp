@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/input_error.hpp"
 
 namespace masked_mapper {
@@ -143,17 +144,8 @@ std::string At(double stamp) {
 }  // namespace
 
 void CheckFloorLabel(const FloorLabel& label) {
-  constexpr std::size_t kLongest = 64;
-  const auto is_allowed = [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '.' || c == '-';
-  };
-  const std::string& text = label.label;
-  if (!text.empty() && text.size() <= kLongest && text != "." && text != ".." &&
-      std::all_of(text.begin(), text.end(), is_allowed)) {
-    return;
-  }
-  throw InputError("floor label '" + text.substr(0, kLongest) + "' at " + At(label.stamp) +
+  if (IsFloorLabel(label.label)) return;
+  throw InputError("floor label '" + label.label.substr(0, 64) + "' at " + At(label.stamp) +
                    ": labels become file names and are up to 64 of A-Z a-z 0-9 _ . -");
 }
 
@@ -239,9 +231,15 @@ LabelledTimeline TimelineOfLabels(const std::vector<FloorLabel>& labels,
       change.span.start = std::max(change.span.start, start);
       change.span.end = std::min(change.span.end, stays[k + 1].span.end);
     }
-    if (change.span.Duration() > 0.0) {
-      timeline.intervals.push_back({change.span.start, stays[k].level, true});
+    if (!(change.span.Duration() > 0.0)) continue;
+    timeline.intervals.push_back({change.span.start, stays[k].level, true});
+    if (stays[k].level == stays[k + 1].level) continue;
+    double middle = 0.5 * (change.span.start + change.span.end);
+    if (!change.transits.empty()) {
+      middle = 0.5 * (change.transits.front().middle + change.transits.back().middle);
+      middle = std::clamp(middle, change.span.start, change.span.end);
     }
+    timeline.intervals.push_back({middle, stays[k + 1].level, true});
   }
 
   const std::size_t count = contradictions.size() + trusted.distrusted;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/motion/floor_pressure.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -123,8 +121,7 @@ std::vector<Step> FindSteps(const std::vector<HeightSample>& samples, double win
                             const FloorPressureOptions& options) {
   const std::vector<Difference> differences = Differences(samples, window, sigma);
   const auto threshold = [&](std::size_t i, double height, double sigmas) {
-    const double weather =
-        2.0 * options.weather_m_per_s * (samples[i + 1].stamp - samples[i].stamp);
+    const double weather = 2.0 * options.drift_m_per_s * (samples[i + 1].stamp - samples[i].stamp);
     return std::max(height, sigmas * differences[i].sigma) + weather;
   };
   std::vector<Step> steps;
@@ -200,14 +197,50 @@ std::vector<Step> WithOverlapsJoined(const std::vector<Step>& steps) {
   return joined;
 }
 
+/// When slow motion began and ended. It is seen late, when it leaves the noise, so its line is
+/// drawn out from where it is surely under way to the heights at rest.
+TimeSpan DrawnOut(const Step& step, const std::vector<HeightSample>& samples,
+                  const MeanHeights& mean) {
+  constexpr double kEarly = 0.15;  // shares of the climb
+  constexpr double kLate = 0.4;
+  constexpr double kMost = 0.3;  // of the motion's duration is added at either end
+  const TimeSpan seen{samples[step.first].stamp, samples[step.last].stamp};
+  const std::size_t half = (step.last - step.first) / 16;
+  const auto smooth = [&](std::size_t i) {
+    return mean(i < half ? 0 : i - half, std::min(i + half + 1, samples.size()));
+  };
+  const double low = mean(step.first < 4 * half ? 0 : step.first - 4 * half, step.first + 1);
+  const double high = mean(step.last, std::min(step.last + 4 * half + 1, samples.size()));
+  const auto share = [&](std::size_t i) { return (smooth(i) - low) / (high - low); };
+  const auto first_above = [&](double wanted) {
+    std::size_t i = step.first;
+    while (i < step.last && share(i) < wanted) ++i;
+    return samples[i].stamp;
+  };
+  const auto last_below = [&](double wanted) {
+    std::size_t i = step.last;
+    while (i > step.first && share(i) > wanted) --i;
+    return samples[i].stamp;
+  };
+  constexpr double kDraw = kEarly / (kLate - kEarly);
+  const double start = first_above(kEarly) - kDraw * (first_above(kLate) - first_above(kEarly));
+  const double end =
+      last_below(1.0 - kEarly) + kDraw * (last_below(1.0 - kEarly) - last_below(1.0 - kLate));
+  const double most = kMost * seen.Duration();
+  return {std::clamp(start, seen.start - most, seen.start),
+          std::clamp(end, seen.end, seen.end + most)};
+}
+
 /// What the wheels make of a step; empty when they say that it cannot have been a change of floor.
 std::optional<Candidate> Explained(const Step& step, const std::vector<HeightSample>& samples,
-                                   const WheelTrack& track, const FloorPressureOptions& options) {
+                                   const MeanHeights& mean, const WheelTrack& track,
+                                   const FloorPressureOptions& options) {
   constexpr double kSlack = 2.0;  // s, by which barometers lag
   const TimeSpan widest{samples[step.first].stamp, samples[step.last].stamp};
   // Heights that move when the log begins or ends.
-  const TimeSpan moving{step.first == 0 ? -kInfinity : widest.start,
-                        step.last + 1 == samples.size() ? kInfinity : widest.end};
+  const TimeSpan drawn_out = DrawnOut(step, samples, mean);
+  const TimeSpan moving{step.first == 0 ? -kInfinity : drawn_out.start,
+                        step.last + 1 == samples.size() ? kInfinity : drawn_out.end};
   Candidate candidate{step, std::abs(step.climb), false, moving};
   // Less than a step counts where the log cuts a ride, and the robot stays in the cab.
   const bool is_cut = candidate.largest_climb < options.step_height;
@@ -253,36 +286,95 @@ std::vector<Candidate> Joined(const std::vector<Candidate>& candidates, double l
   return joined;
 }
 
-/// The climb of a transit from the heights around it, beneath both of which the weather drifts at
-/// one unknown rate: height = level + rate * t + [after] climb.
-FloorTransit Measured(const std::vector<HeightSample>& samples, double sigma, std::size_t begin,
-                      const Candidate& candidate, std::size_t end,
-                      const FloorPressureOptions& options) {
-  constexpr double kLeastSigma = 0.05;  // m: no climb is better known
-  FloorTransit transit{candidate.span.start, candidate.span.end, std::nullopt, 0.0};
+/// The height at one end of a transit, by samples of one floor whose weight falls with their
+/// distance in time from it: neither noise nor the weather's wandering should rule.
+struct EndHeight {
+  double height = 0.0;    ///< m
+  double stamp = 0.0;     ///< s, to which it belongs
+  double variance = 0.0;  ///< m^2
+};
+EndHeight HeightAtEnd(const std::vector<HeightSample>& samples, std::size_t first, std::size_t end,
+                      double stamp, double decay_s, double sigma) {
+  double weights = 0.0;
+  double squares = 0.0;
+  double heights = 0.0;
+  double stamps = 0.0;
+  for (std::size_t i = first; i < end; ++i) {
+    const double weight = std::exp(-std::abs(samples[i].stamp - stamp) / decay_s);
+    weights += weight;
+    squares += weight * weight;
+    heights += weight * samples[i].height;
+    stamps += weight * (samples[i].stamp - stamp);
+  }
+  return {heights / weights, stamp + stamps / weights,
+          sigma * sigma * squares / (weights * weights)};
+}
+
+/// A straight line's slope through the samples, as a sum of information and of information times
+/// slope, so that sides may be added.
+struct Drift {
+  double information = 0.0;  ///< s^2/m^2
+  double weighted = 0.0;
+};
+Drift DriftOf(const std::vector<HeightSample>& samples, std::size_t first, std::size_t end,
+              double sigma, double wander) {
+  const MeanHeights mean({samples.begin() + static_cast<std::ptrdiff_t>(first),
+                          samples.begin() + static_cast<std::ptrdiff_t>(end)});
+  const double middle = 0.5 * (samples[first].stamp + samples[end - 1].stamp);
+  const double duration = samples[end - 1].stamp - samples[first].stamp;
+  double stamps = 0.0;
+  for (std::size_t i = first; i < end; ++i) stamps += samples[i].stamp - middle;
+  const double mean_stamp = middle + stamps / static_cast<double>(end - first);
+  const double mean_height = mean(0, end - first);
+  double squares = 0.0;
+  double products = 0.0;
+  for (std::size_t i = first; i < end; ++i) {
+    const double stamp = samples[i].stamp - mean_stamp;
+    squares += stamp * stamp;
+    products += stamp * (samples[i].height - mean_height);
+  }
+  if (!(squares > 0.0)) return {};
+  // A random walk bends a line's slope by 6/5 of its variance per second over the duration.
+  const double variance = sigma * sigma / squares + 1.2 * wander * wander / duration;
+  return {1.0 / variance, products / squares / variance};
+}
+
+/// The climb of a transit from the heights of the floors before and after, `begin` to `end`.
+FloorTransit Measured(const PressureHeights& heights, std::size_t begin, const Candidate& candidate,
+                      std::size_t end, const FloorPressureOptions& options) {
+  constexpr double kLeastSigma = 0.03;  // m: no climb is better known
+  const std::vector<HeightSample>& samples = heights.samples;
   const double start = samples[candidate.step.first].stamp;
   const double stop = samples[candidate.step.last].stamp;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
-  const double variance = std::max(sigma * sigma, 1e-4);
-  information(1, 1) = variance / (options.weather_m_per_s * options.weather_m_per_s);
-  const auto add = [&](const HeightSample& sample, double is_after) {
-    const Eigen::Vector3d row(1.0, sample.stamp - 0.5 * (start + stop), is_after);
-    information += row * row.transpose();
-    weighted += row * sample.height;
-  };
-  for (std::size_t i = candidate.step.first + 1; i-- > begin;) {
-    if (samples[i].stamp < start - options.level_window_s) break;
-    add(samples[i], 0.0);
-  }
-  for (std::size_t i = candidate.step.last; i < end; ++i) {
-    if (samples[i].stamp > stop + options.level_window_s) break;
-    add(samples[i], 1.0);
-  }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(information);
-  transit.climb = solver.solve(weighted)(2);
-  const double climb_variance = variance * solver.solve(Eigen::Vector3d::UnitZ())(2);
-  transit.climb_sigma = std::sqrt(std::max(0.0, climb_variance) + kLeastSigma * kLeastSigma);
+  while (samples[begin].stamp < start - options.drift_window_s) ++begin;
+  while (samples[end - 1].stamp > stop + options.drift_window_s) --end;
+  const std::size_t before_end = candidate.step.first + 1;
+  const std::size_t after_begin = candidate.step.last;
+
+  const double sigma = std::max(heights.sigma, 0.01);
+  const double wander = options.wander_m_per_sqrt_s;
+  const Drift before = DriftOf(samples, begin, before_end, sigma, wander);
+  const Drift after = DriftOf(samples, after_begin, end, sigma, wander);
+  const double prior = 1.0 / (options.drift_m_per_s * options.drift_m_per_s);
+  const double drift_variance = 1.0 / (prior + before.information + after.information);
+  const double drift = (before.weighted + after.weighted) * drift_variance;
+
+  // Noise and wandering weigh the same at this decay.
+  const auto count = static_cast<double>(before_end - begin + end - after_begin - 1);
+  const double period =
+      (start - samples[begin].stamp + samples[end - 1].stamp - stop) / std::max(1.0, count - 1.0);
+  const double decay_s = std::clamp(sigma * std::sqrt(period) / wander, 5.0, 60.0);
+  const EndHeight low = HeightAtEnd(samples, begin, before_end, start, decay_s, sigma);
+  const EndHeight high = HeightAtEnd(samples, after_begin, end, stop, decay_s, sigma);
+  const double apart = high.stamp - low.stamp;
+
+  FloorTransit transit;
+  transit.start = candidate.span.start;
+  transit.middle = 0.5 * (start + stop);
+  transit.end = candidate.span.end;
+  transit.climb = high.height - low.height - drift * apart;
+  transit.climb_sigma = std::sqrt(low.variance + high.variance + drift_variance * apart * apart +
+                                  wander * wander * apart + kLeastSigma * kLeastSigma);
   return transit;
 }
 
@@ -293,9 +385,10 @@ std::vector<FloorTransit> TransitsOfPressure(const PressureHeights& heights,
                                              const FloorPressureOptions& options,
                                              const StoreyOptions& storeys) {
   const std::vector<HeightSample>& samples = heights.samples;
+  const MeanHeights mean(samples);
   std::vector<Candidate> explained;
   for (const Step& step : WithOverlapsJoined(FindStepsOfAllSpeeds(heights, options))) {
-    const std::optional<Candidate> candidate = Explained(step, samples, track, options);
+    const std::optional<Candidate> candidate = Explained(step, samples, mean, track, options);
     if (candidate) explained.push_back(*candidate);
   }
   const std::vector<Candidate> candidates = Joined(explained, options.landing_s);
@@ -306,7 +399,7 @@ std::vector<FloorTransit> TransitsOfPressure(const PressureHeights& heights,
     const std::size_t begin = k == 0 ? 0 : candidates[k - 1].step.last;
     const std::size_t end =
         k + 1 == candidates.size() ? samples.size() : candidates[k + 1].step.first + 1;
-    transits.push_back(Measured(samples, heights.sigma, begin, candidates[k], end, options));
+    transits.push_back(Measured(heights, begin, candidates[k], end, options));
   }
   return transits;
 }

@@ -179,8 +179,15 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
   if (starts_in_transit) timeline.intervals.push_back({-kInfinity, 0, true});
   timeline.intervals.push_back({first_arrival, 0, false});
   for (std::size_t k = 0; k < transits.size(); ++k) {
-    timeline.intervals.push_back({transits[k].start, assignment.level_of_spell[k], true});
-    timeline.intervals.push_back({transits[k].end, assignment.level_of_spell[k + 1], false});
+    const FloorTransit& transit = transits[k];
+    const std::size_t left = assignment.level_of_spell[k];
+    const std::size_t reached = assignment.level_of_spell[k + 1];
+    timeline.intervals.push_back({transit.start, left, true});
+    if (left != reached) {
+      const double middle = std::clamp(transit.middle, transit.start, transit.end);
+      timeline.intervals.push_back({middle, reached, true});
+    }
+    timeline.intervals.push_back({transit.end, reached, false});
   }
   if (ends_in_transit) {
     timeline.intervals.push_back({last_departure, assignment.level_of_spell.back(), true});

@@ -90,17 +90,25 @@ TimeSpan WheelTrack::LongestStay(double start, double end, double radius) const 
 std::vector<TimeSpan> WheelTrack::Stays(double radius, double min_duration) const {
   std::vector<TimeSpan> stays;
   for (std::size_t i = 0; i < stands_.size();) {
+    // Where it comes to rest is at the rim of where it stays: the middle of the time is not.
     std::size_t last = i;
     while (last + 1 < stands_.size() &&
            (stands_[last + 1].position_in_odom - stands_[i].position_in_odom).norm() <= radius) {
       ++last;
     }
-    if (stands_[last].last - stands_[i].first >= min_duration) {
-      stays.push_back({stands_[i].first, stands_[last].last});
-      i = last + 1;
-    } else {
+    const double near_for = stands_[last].last - stands_[i].first;
+    if (near_for < 0.5 * min_duration) {
       ++i;
+      continue;
     }
+    TimeSpan stay = StayAround(stands_[i].first + 0.5 * near_for, radius);
+    if (!stays.empty()) stay.start = std::max(stay.start, stays.back().end);
+    if (stay.Duration() < min_duration) {
+      ++i;
+      continue;
+    }
+    stays.push_back(stay);
+    while (i < stands_.size() && stands_[i].last <= stay.end) ++i;
   }
   return stays;
 }

@@ -65,7 +65,7 @@ TEST(FloorLabels, AFloorOfOneSecondIsAFloor) {
 TEST(FloorLabels, HeightsComeFromTheSensor) {
   const LabelledTimeline labelled =
       Timeline({{0, "EG"}, {100, "-"}, {120, "OG"}, {200, "-"}, {220, "EG"}},
-               {{95, 125, 4.3, 0.1}, {195, 222, -4.1, 0.1}}, "pressure");
+               {{95, 110, 125, 4.3, 0.1}, {195, 210, 222, -4.1, 0.1}}, "pressure");
   EXPECT_NEAR(labelled.timeline.levels[1].elevation, 4.2, 1e-9);
   EXPECT_TRUE(labelled.timeline.levels[1].elevation_measured);
   EXPECT_TRUE(labelled.timeline.levels[0].elevation_measured);
@@ -77,7 +77,7 @@ TEST(FloorLabels, HeightsComeFromTheSensor) {
 
 TEST(FloorLabels, LateLabelsTakeTheTransitsOfTheSensor) {
   const FloorTimeline timeline =
-      Timeline({{0, "0"}, {140, "1"}}, {{95, 125, 3.4, 0.1}}, "pressure").timeline;
+      Timeline({{0, "0"}, {140, "1"}}, {{95, 110, 125, 3.4, 0.1}}, "pressure").timeline;
   EXPECT_FALSE(timeline.At(94.0).in_transit);
   EXPECT_TRUE(timeline.At(96.0).in_transit);
   EXPECT_FALSE(timeline.At(126.0).in_transit);
@@ -101,7 +101,7 @@ TEST(FloorLabels, WinOverPressureAndSaySoOnce) {
   // Pressure sees a ride inside floor 0 and none between 1 and 2.
   const LabelledTimeline labelled =
       Timeline({{0, "0"}, {300, "-"}, {320, "1"}, {400, "2"}},
-               {{100, 120, 3.5, 0.1}, {300, 320, 3.5, 0.1}}, "pressure");
+               {{100, 110, 120, 3.5, 0.1}, {300, 310, 320, 3.5, 0.1}}, "pressure");
   EXPECT_EQ(labelled.timeline.At(200.0).level, 0U);
   EXPECT_EQ(labelled.timeline.At(500.0).level, 2U);
   ASSERT_EQ(labelled.timeline.levels.size(), 3U);
@@ -117,7 +117,8 @@ TEST(FloorLabels, OneWrongClimbDoesNotMoveTheFloors) {
   std::vector<FloorTransit> transits;
   for (int k = 0; k < 8; ++k) {
     labels.push_back({100.0 * k, k % 2 == 0 ? "0" : "1"});
-    if (k > 0) transits.push_back({100.0 * k - 5, 100.0 * k, k % 2 == 0 ? -3.5 : 3.5, 0.1});
+    if (k > 0)
+      transits.push_back({100.0 * k - 5, 100.0 * k - 2, 100.0 * k, k % 2 == 0 ? -3.5 : 3.5, 0.1});
   }
   transits[3].climb = 3.5;  // to floor 0, which is below
   const LabelledTimeline labelled = Timeline(labels, transits, "pressure");

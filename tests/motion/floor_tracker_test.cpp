@@ -96,7 +96,8 @@ TEST(FloorTracker, WithoutAnySourceThereIsOneFloor) {
 }
 
 TEST(FloorTracker, ASourceThatIsAskedForAndMissingIsSaid) {
-  for (const FloorSource source : {FloorSource::kLabels, FloorSource::kPressure}) {
+  for (const FloorSource source : {FloorSource::kLabels, FloorSource::kPressure,
+                                   FloorSource::kAcceleration, FloorSource::kLidar}) {
     FloorOptions options;
     options.source = source;
     FloorTracker tracker(options);
@@ -151,6 +152,49 @@ TEST(FloorTracker, ZeroPressureIsSaidAndLeftOut) {
   EXPECT_EQ(Track(UpAndDown(), zeros, &tracker).levels.size(), 1U);
   EXPECT_EQ(tracker.warnings().size(), 1U);
   EXPECT_EQ(tracker.source(), FloorSource::kNone);
+}
+
+TEST(FloorTracker, AsksForRangesOnlyWhereTheyWouldTell) {
+  const SyntheticDrive drive = UpAndDown();
+  FloorTracker bare{FloorOptions{}};
+  EXPECT_FALSE(bare.NeedsRanges());
+  LaserScan scan;
+  scan.ranges.clear();
+  bare.Observe(scan);
+  ObserveWheels(drive, &bare);
+  EXPECT_TRUE(bare.NeedsRanges());
+  for (const PressureReading& reading : SyntheticBarometer{}.Read(drive, 1)) bare.Observe(reading);
+  EXPECT_FALSE(bare.NeedsRanges()) << "pressure tells more";
+
+  FloorTracker labelled{FloorOptions{}};
+  labelled.Observe(scan);
+  ObserveWheels(drive, &labelled);
+  labelled.Observe(FloorLabel{0.0, "0"});
+  EXPECT_FALSE(labelled.NeedsRanges());
+
+  FloorTracker restless{FloorOptions{}};
+  restless.Observe(scan);
+  for (int i = 0; i < 1000; ++i) restless.Observe(OdometryReading{0.2 * i, {0.1 * i, 0.0, 0.0}});
+  EXPECT_FALSE(restless.NeedsRanges()) << "no elevator moves a driving robot";
+  scan.ranges.assign(100, 5.0F);
+  labelled.Observe(scan);
+  EXPECT_FALSE(labelled.NeedsRanges());
+}
+
+TEST(FloorTracker, TakesAccelerationWhereThereIsNoPressure) {
+  const SyntheticDrive drive = UpAndDown();
+  FloorTracker tracker{FloorOptions{}};
+  ObserveWheels(drive, &tracker);
+  std::size_t ride = 0;
+  for (double t = 0.0; t < drive.Duration(); t += 0.02) {
+    tracker.Observe(AccelerationReading{t, {0.0, 0.0, 9.81 + drive.AccelerationAt(t, &ride)}});
+  }
+  const FloorTimeline timeline = tracker.Finish();
+  EXPECT_EQ(tracker.source(), FloorSource::kAcceleration);
+  const FloorScore score = ScoreFloors(timeline, drive);
+  EXPECT_EQ(score.levels, 2U);
+  EXPECT_EQ(score.right_share, 1.0);
+  EXPECT_LT(score.worst_elevation, 0.2) << "m";
 }
 
 TEST(FloorTracker, FinishingTwiceSaysTheSame) {

@@ -17,7 +17,7 @@ std::vector<FloorTransit> Rides(const std::vector<double>& climbs) {
   std::vector<FloorTransit> transits;
   for (std::size_t k = 0; k < climbs.size(); ++k) {
     const double start = 100.0 * static_cast<double>(k + 1);
-    transits.push_back({start, start + 20.0, climbs[k], 0.1});
+    transits.push_back({start, start + 12.0, start + 20.0, climbs[k], 0.1});
   }
   return transits;
 }
@@ -77,6 +77,13 @@ TEST(TimelineOfTransits, AFloorMetAgainIsTheOneItWas) {
   EXPECT_EQ(FloorNames(timeline.levels), (std::vector<std::string>{"0", "1", "2", "-1"}));
 }
 
+TEST(TimelineOfTransits, HalfWayTheOtherFloorIsNearer) {
+  const FloorTimeline timeline = TimelineOfTransits(Rides({3.5}), {});
+  EXPECT_EQ(timeline.At(111.0).level, 0U);
+  EXPECT_EQ(timeline.At(113.0).level, 1U);
+  EXPECT_TRUE(timeline.At(113.0).in_transit);
+}
+
 TEST(TimelineOfTransits, ErrorsDoNotAddUpOverAThousandRides) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 0.15);
@@ -118,7 +125,7 @@ TEST(TimelineOfTransits, ALogMayBeginAndEndBetweenFloors) {
 }
 
 TEST(TimelineOfTransits, ALogWhollyInACabIsAllTransit) {
-  const FloorTimeline timeline = TimelineOfTransits({{-kInfinity, kInfinity, 3.5, 0.1}}, {});
+  const FloorTimeline timeline = TimelineOfTransits({{-kInfinity, 0.0, kInfinity, 3.5, 0.1}}, {});
   ASSERT_EQ(timeline.levels.size(), 1U);
   EXPECT_TRUE(timeline.At(0.0).in_transit);
 }

@@ -20,16 +20,17 @@ class SyntheticDrive {
   struct State {
     double stamp = 0.0;
     Pose2 T_odom_robot;
-    double height = 0.0;        ///< m
-    double acceleration = 0.0;  ///< m/s^2, upwards
-    std::size_t floor = 0;      ///< in transit: the floor left
-    bool in_transit = false;    ///< the cab's door is not open, or on stairs
+    double height = 0.0;      ///< m
+    std::size_t floor = 0;    ///< in transit: the floor left
+    bool in_transit = false;  ///< the cab's door is not open, or on stairs
   };
   struct Ride {
     double start = 0.0;  ///< s, of the motion up or down
     double end = 0.0;
     std::size_t from = 0;
     std::size_t to = 0;
+    double push = 0.0;  ///< m/s^2 up at the start, down at the end; 0: stairs
+    double ramp = 0.0;  ///< s of speeding up, and of slowing down
   };
 
   SyntheticDrive(std::vector<double> elevations, std::size_t first_floor, unsigned seed)
@@ -64,21 +65,17 @@ class SyntheticDrive {
     const double ramp = top / 0.8;
     const double duration = std::abs(climb) / top + ramp;
     const double start = state_.stamp;
-    rides_.push_back({start, start + duration, state_.floor, floor});
+    rides_.push_back({start, start + duration, state_.floor, floor, 0.8 * sign, ramp});
     const double ramp_climb = 0.4 * ramp * ramp;
     Append(duration, [&](State& state, double) {
       const double t = state.stamp - start;
       const double left = std::max(0.0, duration - t);
       double height = ramp_climb + top * (t - ramp);
-      state.acceleration = 0.0;
       if (t < ramp) height = 0.4 * t * t;
-      if (t < ramp) state.acceleration = sign * 0.8;
       if (left < ramp) height = std::abs(climb) - 0.4 * left * left;
-      if (left < ramp) state.acceleration = -sign * 0.8;
       state.height = from + sign * height;
     });
     state_.height = elevations_[floor];
-    state_.acceleration = 0.0;
     floor_reached_ = floor;
   }
   void LeaveCab() {
@@ -96,7 +93,7 @@ class SyntheticDrive {
   /// Two flights with a slow turn between them.
   void TakeStairs(std::size_t floor) {
     const double climb = elevations_[floor] - state_.height;
-    rides_.push_back({state_.stamp, 0.0, state_.floor, floor});
+    rides_.push_back({state_.stamp, 0.0, state_.floor, floor, 0.0, 0.0});
     state_.in_transit = true;
     const double half = 0.5 * std::abs(climb) / 0.3;
     Move(half, 0.5, 0.0, climb < 0.0 ? -0.3 : 0.3);
@@ -118,6 +115,15 @@ class SyntheticDrive {
     if (index + 1 >= states_.size()) return states_.back().height;
     const double fraction = stamp / kPeriod - static_cast<double>(index);
     return states_[index].height + fraction * (states_[index + 1].height - states_[index].height);
+  }
+  /// m/s^2 upwards, without gravity; `stamp` rises from call to call of one `ride` counter.
+  double AccelerationAt(double stamp, std::size_t* ride) const {
+    while (*ride + 1 < rides_.size() && rides_[*ride].end < stamp) ++*ride;
+    if (rides_.empty()) return 0.0;
+    const Ride& now = rides_[*ride];
+    if (stamp < now.start || stamp > now.end) return 0.0;
+    if (stamp < now.start + now.ramp) return now.push;
+    return stamp > now.end - now.ramp ? -now.push : 0.0;
   }
 
  private:

@@ -21,7 +21,7 @@ struct FloorLevel {
 /// From `start` to the next interval's start the robot is on `level`, or between levels.
 struct FloorInterval {
   double start = 0.0;     ///< s; the first interval counts from the beginning of time
-  std::size_t level = 0;  ///< in transit: the level left last
+  std::size_t level = 0;  ///< in transit: the level left, from the middle on the one reached
   bool in_transit = false;
 };
 

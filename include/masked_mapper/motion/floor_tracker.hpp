@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/motion/floor_acceleration.hpp"
 #include "masked_mapper/motion/floor_labels.hpp"
+#include "masked_mapper/motion/floor_lidar.hpp"
 #include "masked_mapper/motion/floor_pressure.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
@@ -17,10 +19,12 @@
 namespace masked_mapper {
 
 enum class FloorSource {
-  kAuto,      ///< the best that the log holds, in the order below
-  kLabels,    ///< FLOOR lines, or a file of labels
-  kPressure,  ///< a barometer
-  kNone,      ///< one floor
+  kAuto,          ///< the best that the log holds, in the order below
+  kLabels,        ///< FLOOR lines, or a file of labels
+  kPressure,      ///< a barometer
+  kAcceleration,  ///< an accelerometer: elevators only
+  kLidar,         ///< the scans: elevators only, and never which floor
+  kNone,          ///< one floor
 };
 
 struct FloorOptions {
@@ -28,16 +32,23 @@ struct FloorOptions {
   StoreyOptions storeys;
   FloorLabelOptions labels;
   FloorPressureOptions pressure;
+  FloorAccelerationOptions acceleration;
+  FloorLidarOptions lidar;
 };
 
 class FloorTracker {
  public:
-  explicit FloorTracker(const FloorOptions& options) : options_(options) {}
+  explicit FloorTracker(const FloorOptions& options);
 
   /// These labels stand for those of the log. Throws InputError for a label that may not be one.
   void UseLabels(const std::vector<FloorLabel>& labels);
   /// Observations in order of stamps. Throws InputError for a label that may not be one.
   void Observe(const Observation& observation);
+
+  /// Whether the log, of which scans came without ranges, holds nothing that tells floors apart but
+  /// those ranges, and the robot stood still long enough for a ride at least once. If so, observe
+  /// the log once more, scans with ranges; nothing else of it is looked at again.
+  bool NeedsRanges() const;
 
   /// All levels and intervals, once the whole log was observed. Clears warnings of before.
   FloorTimeline Finish();
@@ -51,10 +62,16 @@ class FloorTracker {
     return options_.source == FloorSource::kAuto || options_.source == source;
   }
 
+  FloorTimeline FinishByClimbs(FloorSource source, const std::vector<FloorTransit>& transits);
+  bool HasLabels() const;
+
   FloorOptions options_;
   bool labels_are_given_ = false;
   std::vector<FloorLabel> labels_;
   std::vector<PressureReading> pressure_;
+  AccelerationTrack acceleration_;
+  LidarTrack lidar_;
+  bool has_scans_ = false;
   WheelTrack track_;
   FloorSource source_ = FloorSource::kNone;
   std::vector<std::string> warnings_;

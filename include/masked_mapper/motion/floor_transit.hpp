@@ -19,6 +19,7 @@ struct StoreyOptions {
 /// infinity: past the end of the log).
 struct FloorTransit {
   double start = 0.0;           ///< s
+  double middle = 0.0;          ///< s, when it was half-way; before `start` or after `end`: those
   double end = 0.0;             ///< s
   std::optional<double> climb;  ///< m up (negative: down); empty: nobody knows
   double climb_sigma = 0.0;     ///< m

@@ -34,8 +34,7 @@ class WheelTrack {
   TimeSpan StayAround(double stamp, double radius) const;
   /// Of the stays around the moments of [start, end], the one that has most of it.
   TimeSpan LongestStay(double start, double end, double radius) const;
-  /// The track falls apart into stays within `radius`; those of `min_duration` (s) and more, in
-  /// order.
+  /// All stays of `min_duration` (s) and more, in order; they do not overlap.
   std::vector<TimeSpan> Stays(double radius, double min_duration) const;
 
  private:

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rides by vertical acceleration: a cab that carries a resting robot pushes it once and catches it
+// once. Between the two the cab moves, before and after it stands, so the integral may be held to
+// zero speed at both ends and what is left is the climb. Stairs and ramps are not seen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/wheel_track.hpp"
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+struct FloorAccelerationOptions {
+  double spell_s = 0.1;     ///< s, over which readings are averaged
+  double pulse = 0.12;      ///< m/s^2, for longer than `pulse_s`: the cab speeds up or slows down
+  double pulse_s = 0.4;     ///< s
+  double rest_speed = 0.2;  ///< m/s left after the last pulse of a ride at most ...
+  double rest_share = 0.3;  ///< ... or this share of its highest speed
+  double longest_ride_s = 300;  ///< s
+  double cab_radius = 0.25;     ///< m within which a robot stays while it turns round in a cab
+  double least_stay_s = 6.0;    ///< s that wheels rest for a ride and its doors at least
+};
+
+/// Vertical acceleration over the drive, thinned as it comes.
+class AccelerationTrack {
+ public:
+  explicit AccelerationTrack(const FloorAccelerationOptions& options) : options_(options) {}
+
+  /// Readings in order of stamps; what is not finite or steps back in time is left out.
+  void Observe(const AccelerationReading& reading);
+
+  bool IsEmpty() const { return spells_.empty() && count_ == 0; }
+
+  struct Rides {
+    std::vector<FloorTransit> transits;  ///< in order
+    bool usable = false;                 ///< false: the readings are not those of an accelerometer
+    std::vector<std::string> warnings;
+  };
+  Rides FindRides(const WheelTrack& track, const StoreyOptions& storeys) const;
+
+ private:
+  struct Spell {
+    double stamp = 0.0;
+    Eigen::Vector3d acceleration_in_robot = Eigen::Vector3d::Zero();
+  };
+  Spell Current() const;
+
+  FloorAccelerationOptions options_;
+  std::vector<Spell> spells_;
+  // The spell that is still growing.
+  double first_stamp_ = 0.0;
+  double last_stamp_ = 0.0;
+  double stamps_ = 0.0;  ///< from the first
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  int count_ = 0;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/floor_acceleration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kGravity = 9.80665;  // m/s^2
+
+struct Vertical {
+  double stamp = 0.0;  ///< s
+  double value = 0.0;  ///< m/s^2 up
+};
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One push of the cab: samples [first, end).
+struct Pulse {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  double speed_change = 0.0;  ///< m/s
+};
+
+double Step(const std::vector<Vertical>& samples, std::size_t i) {
+  return std::min(samples[i].stamp - samples[i - 1].stamp, 1.0);  // a gap is no push
+}
+
+/// Pulses among the samples [first, end), whose accelerations are above `zero`.
+std::vector<Pulse> FindPulses(const std::vector<Vertical>& samples, std::size_t first,
+                              std::size_t end, double zero, double threshold,
+                              const FloorAccelerationOptions& options) {
+  const auto smooth = [&](std::size_t i) {
+    const std::size_t from = std::max(first, i < 2 ? 0 : i - 2);
+    const std::size_t to = std::min(end, i + 3);
+    double sum = 0.0;
+    for (std::size_t k = from; k < to; ++k) sum += samples[k].value - zero;
+    return sum / static_cast<double>(to - from);
+  };
+  std::vector<Pulse> pulses;
+  for (std::size_t i = first; i < end;) {
+    const double sign = smooth(i) < 0.0 ? -1.0 : 1.0;
+    Pulse pulse{i, i, 0.0};
+    while (pulse.end < end && sign * smooth(pulse.end) > threshold) {
+      if (pulse.end > first) {
+        pulse.speed_change += smooth(pulse.end) * Step(samples, pulse.end);
+      }
+      ++pulse.end;
+    }
+    if (pulse.end == i) {
+      ++i;
+      continue;
+    }
+    if (samples[pulse.end - 1].stamp - samples[pulse.first].stamp >= options.pulse_s) {
+      pulses.push_back(pulse);
+    }
+    i = pulse.end;
+  }
+  return pulses;
+}
+
+struct Ride {
+  double start = 0.0;  ///< s
+  double end = 0.0;
+  double climb = 0.0;  ///< m
+  double sigma = 0.0;  ///< m
+};
+
+/// Speed and height from zero to zero speed: what is left of it at the end is a constant error of
+/// the acceleration.
+Ride Integrate(const std::vector<Vertical>& samples, std::size_t first, std::size_t last,
+               double zero, double noise) {
+  std::vector<double> speeds = {0.0};
+  double duration = 0.0;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    const double mean = 0.5 * (samples[i - 1].value + samples[i].value) - zero;
+    speeds.push_back(speeds.back() + mean * Step(samples, i));
+    duration += Step(samples, i);
+  }
+  const double bias = duration > 0.0 ? speeds.back() / duration : 0.0;
+  Ride ride{samples[first].stamp, samples[last].stamp, 0.0, 0.0};
+  double elapsed = 0.0;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    const double step = Step(samples, i);
+    const double before = speeds[i - first - 1] - bias * elapsed;
+    elapsed += step;
+    ride.climb += 0.5 * step * (before + speeds[i - first] - bias * elapsed);
+  }
+  // A bridge of white noise, some per cent of scale, and what no model has.
+  const double period = duration / static_cast<double>(std::max<std::size_t>(last - first, 1));
+  const double bridge = noise * std::sqrt(period * duration * duration * duration / 12.0);
+  ride.sigma = std::sqrt(bridge * bridge + std::pow(0.02 * ride.climb, 2) + 0.1 * 0.1);
+  return ride;
+}
+
+/// Deviation of one sample's noise, from differences of neighbours.
+double NoiseOf(const std::vector<Vertical>& samples, std::size_t first, std::size_t end) {
+  std::vector<double> differences;
+  for (std::size_t i = first + 1; i < end; ++i) {
+    differences.push_back(std::abs(samples[i].value - samples[i - 1].value));
+  }
+  return differences.empty() ? 0.0 : Median(std::move(differences)) / 0.6745 / std::sqrt(2.0);
+}
+
+/// Rides among samples [first, end), through which the robot stays in one place.
+std::vector<Ride> RidesOfStay(const std::vector<Vertical>& samples, std::size_t first,
+                              std::size_t end, const FloorAccelerationOptions& options) {
+  std::vector<Ride> rides;
+  if (end - first < 10) return rides;
+  const double noise = NoiseOf(samples, first, end);
+  std::vector<double> values;
+  for (std::size_t i = first; i < end; ++i) values.push_back(samples[i].value);
+  const double zero = Median(std::move(values));
+  const double threshold = std::max(options.pulse, 4.0 * noise / std::sqrt(5.0));
+  const std::vector<Pulse> pulses = FindPulses(samples, first, end, zero, threshold, options);
+  constexpr std::size_t kMargin = 5;  // samples in which a pulse begins and ends softly
+  for (std::size_t k = 0; k < pulses.size();) {
+    double speed = 0.0;
+    double highest = 0.0;
+    std::optional<std::size_t> last;
+    for (std::size_t m = k; m < pulses.size() && !last; ++m) {
+      const double duration = samples[pulses[m].end - 1].stamp - samples[pulses[k].first].stamp;
+      if (duration > options.longest_ride_s) break;
+      speed += pulses[m].speed_change;
+      highest = std::max(highest, std::abs(speed));
+      const double rest = std::max(options.rest_speed, options.rest_share * highest);
+      if (m > k && std::abs(speed) <= rest) last = m;
+    }
+    if (!last) {
+      ++k;
+      continue;
+    }
+    const std::size_t from = std::max(first, pulses[k].first - std::min(pulses[k].first, kMargin));
+    const std::size_t to = std::min(end - 1, pulses[*last].end - 1 + kMargin);
+    rides.push_back(Integrate(samples, from, to, zero, noise));
+    k = *last + 1;
+  }
+  return rides;
+}
+
+FloorTransit TransitOf(const Ride& ride) {
+  return {ride.start, 0.5 * (ride.start + ride.end), ride.end, ride.climb, ride.sigma};
+}
+
+/// Rides of a cab that the robot does not leave make one transit.
+FloorTransit Joined(const FloorTransit& a, const FloorTransit& b) {
+  FloorTransit joined = a;
+  joined.middle = 0.5 * (a.middle + b.middle);
+  joined.end = std::max(a.end, b.end);
+  joined.climb = *a.climb + *b.climb;
+  joined.climb_sigma = std::hypot(a.climb_sigma, b.climb_sigma);
+  return joined;
+}
+
+}  // namespace
+
+AccelerationTrack::Spell AccelerationTrack::Current() const {
+  const double count = count_;
+  return {first_stamp_ + stamps_ / count, sum_ / count};
+}
+
+void AccelerationTrack::Observe(const AccelerationReading& reading) {
+  if (!std::isfinite(reading.stamp) || !reading.acceleration_in_robot.allFinite()) return;
+  if (count_ > 0 && reading.stamp < last_stamp_) return;
+  if (count_ > 0 && reading.stamp >= first_stamp_ + options_.spell_s) {
+    spells_.push_back(Current());
+    count_ = 0;
+  }
+  if (count_ == 0) {
+    first_stamp_ = reading.stamp;
+    stamps_ = 0.0;
+    sum_.setZero();
+  }
+  last_stamp_ = reading.stamp;
+  stamps_ += reading.stamp - first_stamp_;
+  sum_ += reading.acceleration_in_robot;
+  ++count_;
+}
+
+AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
+                                                      const StoreyOptions& storeys) const {
+  Rides result;
+  if (IsEmpty()) return result;
+  std::vector<Spell> spells = spells_;
+  if (count_ > 0) spells.push_back(Current());
+
+  // Gravity tells the unit, and which way is up.
+  Eigen::Vector3d up(0.0, 0.0, 0.0);
+  std::vector<double> norms;
+  for (const Spell& spell : spells) {
+    norms.push_back(spell.acceleration_in_robot.norm());
+    up += spell.acceleration_in_robot / std::max(norms.back(), 1e-9);
+  }
+  const double gravity = Median(std::move(norms));
+  double scale = 1.0;
+  if (gravity > 0.9 && gravity < 1.1) {
+    scale = kGravity;
+    result.warnings.push_back("acceleration is taken as multiples of gravity");
+  } else if (gravity < 8.0 || gravity > 12.0) {
+    result.warnings.push_back("acceleration without gravity is of no use for floors: left out");
+    return result;
+  }
+  result.usable = true;
+  up.normalize();
+  std::vector<Vertical> samples;
+  samples.reserve(spells.size());
+  for (const Spell& spell : spells) {
+    samples.push_back({spell.stamp, scale * up.dot(spell.acceleration_in_robot)});
+  }
+
+  std::vector<TimeSpan> stays = {{samples.front().stamp, samples.back().stamp}};
+  if (track.Travels()) stays = track.Stays(options_.cab_radius, options_.least_stay_s);
+  for (const TimeSpan& stay : stays) {
+    const auto is_before = [](const Vertical& sample, double stamp) {
+      return sample.stamp < stamp;
+    };
+    const auto first = std::lower_bound(samples.begin(), samples.end(), stay.start, is_before);
+    const auto end = std::lower_bound(first, samples.end(), stay.end, is_before);
+    for (const Ride& ride :
+         RidesOfStay(samples, static_cast<std::size_t>(first - samples.begin()),
+                     static_cast<std::size_t>(end - samples.begin()), options_)) {
+      FloorTransit transit = TransitOf(ride);
+      if (track.Travels()) {
+        const TimeSpan whole = track.StayAround(transit.middle, options_.cab_radius);
+        transit.start = std::min(transit.start, whole.start);
+        transit.end = std::max(transit.end, whole.end);
+      }
+      if (result.transits.empty() || transit.start > result.transits.back().end) {
+        result.transits.push_back(transit);
+      } else {
+        result.transits.back() = Joined(result.transits.back(), transit);
+      }
+    }
+  }
+  const auto is_small = [&](const FloorTransit& transit) {
+    return std::abs(*transit.climb) < LeastClimb(storeys) && std::isfinite(transit.start) &&
+           std::isfinite(transit.end);
+  };
+  result.transits.erase(std::remove_if(result.transits.begin(), result.transits.end(), is_small),
+                        result.transits.end());
+  return result;
+}
+
+}  // namespace masked_mapper

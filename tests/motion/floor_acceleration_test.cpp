@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/motion/floor_acceleration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "motion/floor_checks.hpp"
+#include "motion/synthetic_drive.hpp"
+
+namespace masked_mapper {
+namespace {
+
+struct Accelerometer {
+  double rate = 50.0;     ///< Hz
+  double sigma = 0.03;    ///< m/s^2
+  double bias = 0.04;     ///< m/s^2
+  double tilt = 0.02;     ///< rad
+  double gravity = 9.81;  ///< m/s^2
+  double unit = 1.0;      ///< m/s^2
+};
+
+AccelerationTrack Feel(const SyntheticDrive& drive, const Accelerometer& sensor, unsigned seed) {
+  AccelerationTrack track{FloorAccelerationOptions{}};
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, sensor.sigma);
+  std::size_t ride = 0;
+  for (double t = 0.0; t < drive.Duration(); t += 1.0 / sensor.rate) {
+    const double up = sensor.gravity + sensor.bias + drive.AccelerationAt(t, &ride);
+    const Eigen::Vector3d value(sensor.tilt * up + noise(random), noise(random),
+                                up + noise(random));
+    track.Observe({t, value / sensor.unit});
+  }
+  return track;
+}
+
+WheelTrack TrackOf(const SyntheticDrive& drive) {
+  WheelTrack track;
+  for (const SyntheticDrive::State& state : drive.states()) {
+    track.Observe({state.stamp, state.T_odom_robot});
+  }
+  return track;
+}
+
+SyntheticDrive FourFloors(unsigned seed) {
+  SyntheticDrive drive({0.0, 4.0, 7.5, 11.0}, 0, seed);
+  drive.Roam(200.0);
+  for (const std::size_t floor : {1, 3, 0, 2, 1, 0}) {
+    drive.TakeElevator(floor);
+    drive.Roam(100.0);
+  }
+  return drive;
+}
+
+FloorTimeline Timeline(const AccelerationTrack& acceleration, const WheelTrack& track) {
+  return TimelineOfTransits(acceleration.FindRides(track, {}).transits, {});
+}
+
+TEST(FloorAcceleration, KnowsTheFloorsByTwoPulses) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const SyntheticDrive drive = FourFloors(seed);
+    const FloorTimeline timeline = Timeline(Feel(drive, {}, seed), TrackOf(drive));
+    const FloorScore score = ScoreFloors(timeline, drive);
+    EXPECT_EQ(score.levels, 4U) << seed;
+    EXPECT_EQ(score.right_share, 1.0) << seed;
+    EXPECT_EQ(score.transits_missed, 0) << seed;
+    EXPECT_EQ(score.cab_share, 1.0) << seed;
+    EXPECT_LT(score.worst_elevation, 0.3) << "m, seed " << seed;
+  }
+}
+
+TEST(FloorAcceleration, SigmaFitsTheErrors) {
+  double squares = 0.0;
+  int count = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SyntheticDrive drive({0.0, 30.0}, 0, seed);
+    drive.Roam(50.0);
+    drive.TakeElevator(1);
+    drive.Roam(50.0);
+    const auto rides = Feel(drive, {}, seed).FindRides(TrackOf(drive), {});
+    ASSERT_EQ(rides.transits.size(), 1U);
+    squares += std::pow((*rides.transits[0].climb - 30.0) / rides.transits[0].climb_sigma, 2);
+    ++count;
+  }
+  EXPECT_LT(std::sqrt(squares / count), 1.5);
+}
+
+TEST(FloorAcceleration, WithoutWheelsItTellsTheSame) {
+  const SyntheticDrive drive = FourFloors(1);
+  const FloorScore score = ScoreFloors(Timeline(Feel(drive, {}, 1), WheelTrack{}), drive);
+  EXPECT_EQ(score.levels, 4U);
+  EXPECT_GT(score.right_share, 0.999);
+  EXPECT_EQ(score.transits_missed, 0);
+}
+
+TEST(FloorAcceleration, GravityTellsTheUnit) {
+  Accelerometer sensor;
+  sensor.unit = 9.80665;
+  const SyntheticDrive drive = FourFloors(2);
+  const auto rides = Feel(drive, sensor, 2).FindRides(TrackOf(drive), {});
+  EXPECT_TRUE(rides.usable);
+  EXPECT_EQ(rides.transits.size(), 6U);
+  EXPECT_EQ(rides.warnings.size(), 1U);
+}
+
+TEST(FloorAcceleration, WithoutGravityItIsLeftOutAndSaid) {
+  Accelerometer sensor;
+  sensor.gravity = 0.0;
+  const SyntheticDrive drive = FourFloors(2);
+  const auto rides = Feel(drive, sensor, 2).FindRides(TrackOf(drive), {});
+  EXPECT_FALSE(rides.usable);
+  EXPECT_TRUE(rides.transits.empty());
+  EXPECT_EQ(rides.warnings.size(), 1U);
+}
+
+TEST(FloorAcceleration, DrivingAndRestingMakesNoFloors) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SyntheticDrive drive({0.0, 3.5}, 0, seed);
+    drive.Roam(2000.0);
+    Accelerometer rough;
+    rough.sigma = 0.5;
+    EXPECT_TRUE(Feel(drive, rough, seed).FindRides(TrackOf(drive), {}).transits.empty());
+  }
+}
+
+TEST(FloorAcceleration, SeveralRidesInOneCabAreOneTransit) {
+  SyntheticDrive drive({0.0, 3.5, 7.0, 10.5}, 0, 3);
+  drive.Roam(100.0);
+  drive.EnterCab();
+  drive.RideTo(1);
+  drive.Rest(12.0);
+  drive.RideTo(3);
+  drive.Rest(3.0);
+  drive.RideTo(2);
+  drive.LeaveCab();
+  drive.Roam(100.0);
+  const auto rides = Feel(drive, {}, 3).FindRides(TrackOf(drive), {});
+  ASSERT_EQ(rides.transits.size(), 1U);
+  EXPECT_NEAR(*rides.transits[0].climb, 7.0, 0.3);
+}
+
+TEST(FloorAcceleration, TinyAndBrokenInputsAreNoHarm) {
+  AccelerationTrack track{FloorAccelerationOptions{}};
+  EXPECT_TRUE(track.IsEmpty());
+  EXPECT_FALSE(track.FindRides({}, {}).usable);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  track.Observe({nan, {0.0, 0.0, 9.8}});
+  track.Observe({0.0, {0.0, nan, 9.8}});
+  EXPECT_TRUE(track.IsEmpty());
+  track.Observe({1.0, {0.0, 0.0, 9.8}});
+  track.Observe({0.5, {0.0, 0.0, 9.8}});
+  EXPECT_TRUE(track.FindRides({}, {}).usable);
+  EXPECT_TRUE(track.FindRides({}, {}).transits.empty());
+}
+
+}  // namespace
+}  // namespace masked_mapper
