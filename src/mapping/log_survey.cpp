@@ -54,6 +54,12 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
     T_odom_before = scan->T_odom_robot;
   }
   if (survey.scans == 0) throw InputError(path + ": not one valid laser scan in it");
+  if (floors.NeedsRanges()) {
+    const std::unique_ptr<LogReader> again = OpenLog(path, options.log);
+    while (const std::optional<Observation> observation = again->Next()) {
+      floors.Observe(*observation);
+    }
+  }
   survey.floors = floors.Finish();
   survey.floor_source = floors.source();
   survey.warnings = floors.warnings();

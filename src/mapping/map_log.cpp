@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/mapping/map_log.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
@@ -49,12 +48,7 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
     survey = SurveyLog(path, options);
     settled.motion.source = SettleMotionSource(path, options.motion.source, survey);
   }
-  std::unique_ptr<MaskedMapper> mapper;
-  try {
-    mapper = std::make_unique<MaskedMapper>(mask, settled, survey.floors);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(error.what());
-  }
+  MaskedMapper mapper(mask, settled, survey.floors);
 
   progress.Stage("mapping");
   const std::unique_ptr<LogReader> log = OpenLog(path, options.log);
@@ -67,12 +61,12 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
       observation = log->Next();
     }
     if (!observation) break;
-    mapper->Observe(*observation);
+    mapper.Observe(*observation);
     if (std::holds_alternative<LaserScan>(*observation)) {
       progress.Progress(log->Progress(), ++scans);
     }
   }
-  MappingResult result = mapper->Finish();
+  MappingResult result = mapper.Finish();
   result.log = log->Statistics();
   result.seconds.read = read_seconds;
   result.motion_source = settled.motion.source;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "masked_mapper/sensor/beam_directions.hpp"
+#include "masked_mapper/sensor/beam_sweep.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -64,7 +64,7 @@ Counts Compare(const std::deque<PlacedScan>& walls, const std::deque<PlacedScan>
     T_laser_odom.push_back(Inverse(view.T_odom_robot * view.scan.T_robot_laser));
   }
   for (const PlacedScan& wall : walls) {
-    BeamDirections direction = BeamDirections::InRobot(wall.scan);
+    BeamSweep direction = BeamSweep::InRobot(wall.scan);
     for (std::size_t i = 0; i < wall.scan.size(); ++i, direction.Advance()) {
       if (!wall.scan.IsHit(i)) continue;
       const Eigen::Vector2d point_in_robot =

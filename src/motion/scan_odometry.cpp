@@ -97,8 +97,8 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   const Alignment aligned = AlignFromSeveralGuesses(*points, T_map_robot_, prior);
   inlier_share_ = aligned.inlier_share;
   if (aligned.inlier_share >= options_.lost_inlier_share) {
-    // Scans against one map err alike: a short step is worth its share of an alignment's covariance,
-    // and all of it only over the way on which the map itself has become another.
+    // Scans against one map err alike: a short step is worth its share of an alignment's
+    // covariance, and all of it only over the way on which the map itself has become another.
     const double share = std::min(1.0, travelled / options_.decorrelation_distance_m +
                                            turned / DegToRad(options_.decorrelation_angle_deg));
     const Eigen::Matrix3d covariance_in_map =

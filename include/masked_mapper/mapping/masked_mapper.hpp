@@ -22,7 +22,7 @@ namespace masked_mapper {
 class MaskedMapper {
  public:
   /// `floors` says where the robot was when; it outlives the mapper.
-  /// Throws std::invalid_argument when `mask` is not a mask expression.
+  /// Throws InputError when `mask` is not a mask expression.
   MaskedMapper(const std::string& mask, const Options& options, const FloorTimeline& floors);
 
   /// Observations in order of stamps.

@@ -21,9 +21,9 @@ struct ScanOdometryOptions {
   int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
   double decorrelation_distance_m = 1.0;  ///< travel over which alignments err independently
   double decorrelation_angle_deg = 30.0;  ///< or turn
-  double min_inlier_share = 0.5;      ///< below it other guesses are tried
-  double repeat_difference_m = 0.1;   ///< between wheels and the step before, to try both
-  double lost_inlier_share = 0.25;    ///< below it after all guesses the scan is not believed
+  double min_inlier_share = 0.5;          ///< below it other guesses are tried
+  double repeat_difference_m = 0.1;       ///< between wheels and the step before, to try both
+  double lost_inlier_share = 0.25;        ///< below it after all guesses the scan is not believed
 };
 
 class ScanOdometry {
