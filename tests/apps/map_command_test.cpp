@@ -122,6 +122,34 @@ TEST(MapCommand, ResumeWithoutAnythingToResumeStartsAfresh) {
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_TRUE(fs::exists(folder / out + "/summary.json"));
   }
+  // A finished map is not gone on with, and not replaced either.
+  ExpectUsersFault(folder, {"map", folder / "ring.log", "-o", folder / "missing", "--resume"},
+                   "--force");
+}
+
+TEST(MapCommand, SettingsWinOverTheConfigurationAndTheConfigurationOverDefaults) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(Ring()));
+  WriteText(folder / "my.yaml", "matcher: {min_score: 0.5, min_window_m: 0.4}\n");
+  const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--set",
+                              "matcher.min_score=0.6", "--config", folder / "my.yaml"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto summary = nlohmann::json::parse(ReadText(folder / "out/summary.json"));
+  EXPECT_EQ(summary.at("options").at("matcher.min_score"), 0.6);
+  EXPECT_EQ(summary.at("options").at("matcher.min_window_m"), 0.4);
+}
+
+TEST(MapCommand, AnInterruptLeavesNothing) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(RingLog(20)));
+  const std::vector<std::string> before = folder.Listing();
+  RunSettings settings;
+  settings.interrupt = true;
+  const Ran ran =
+      RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--mask", "always"}, settings);
+  EXPECT_EQ(ran.code, 1) << ran.err;
+  EXPECT_TRUE(Contains(ran.err, "interrupted")) << ran.err;
+  EXPECT_EQ(folder.Listing(), before);
 }
 
 TEST(MapCommand, MapWritesTheContract) {

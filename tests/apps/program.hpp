@@ -14,6 +14,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -29,9 +30,12 @@ struct Ran {
 struct RunSettings {
   rlim_t largest_file = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
   bool terminal = false;                ///< standard error is a terminal
+  bool interrupt = false;               ///< Ctrl-C as soon as it says anything
 };
 
-inline void ReadAllOf(std::vector<std::pair<int, std::string*>> sources) {
+/// Reads until all are closed; calls `spoken` once, when the first byte has come.
+inline void ReadAllOf(std::vector<std::pair<int, std::string*>> sources,
+                      std::function<void()> spoken) {
   while (!sources.empty()) {
     std::vector<pollfd> polled;
     for (const auto& source : sources) polled.push_back({source.first, POLLIN, 0});
@@ -42,6 +46,8 @@ inline void ReadAllOf(std::vector<std::pair<int, std::string*>> sources) {
       const ssize_t got = read(polled[i].fd, buffer, sizeof buffer);
       if (got > 0) {
         sources[i].second->append(buffer, static_cast<std::size_t>(got));
+        if (spoken) spoken();
+        spoken = nullptr;
       } else {
         close(polled[i].fd);
         sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(i));
@@ -80,7 +86,9 @@ inline Ran RunProgram(const std::vector<std::string>& arguments, const RunSettin
   close(out[1]);
   close(err[1]);
   Ran ran;
-  ReadAllOf({{out[0], &ran.out}, {err[0], &ran.err}});
+  ReadAllOf({{out[0], &ran.out}, {err[0], &ran.err}}, [&] {
+    if (settings.interrupt) kill(child, SIGINT);
+  });
   int status = 0;
   waitpid(child, &status, 0);
   if (WIFEXITED(status)) ran.code = WEXITSTATUS(status);
