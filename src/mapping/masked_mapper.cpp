@@ -53,15 +53,16 @@ void MaskedMapper::Observe(const Observation& observation) {
 }
 
 void MaskedMapper::ObserveScan(const LaserScan& scan) {
+  const FloorInterval& interval = floors_.At(scan.stamp);
   {
     const StageTimer timer(result_.seconds.motion);
-    motion_.Observe(scan);
+    motion_.Observe(scan, interval.in_transit != in_transit_);
   }
-  const FloorInterval& interval = floors_.At(scan.stamp);
+  const auto floor = static_cast<FloorId>(interval.level);
   if (result_.graph.nodes().empty()) {
     // Node 0 is a scan-matching node at the start (III-B); a drive that starts in transit has none.
     in_transit_ = interval.in_transit;
-    AddNode(scan.stamp, in_transit_ ? nullptr : PointsInRobot(scan), EdgeKind::kOdometry);
+    AddNode(scan.stamp, floor, in_transit_ ? nullptr : PointsInRobot(scan), EdgeKind::kOdometry);
   } else {
     ChangeFloor(interval, scan.stamp);
   }
@@ -79,25 +80,27 @@ void MaskedMapper::ObserveScan(const LaserScan& scan) {
     const bool far_from_scan_node =
         !last_scan_node_ || distance_from(*last_scan_node_) > options_.nodes.min_edge_length_m;
     if (far_from_scan_node && mask_->Fires()) {
-      CloseLoops(AddNode(scan.stamp, PointsInRobot(scan), EdgeKind::kOdometry));
+      CloseLoops(AddNode(scan.stamp, floor, PointsInRobot(scan), EdgeKind::kOdometry));
     } else if (distance_from(last_node) > options_.nodes.max_edge_length_m) {
-      AddNode(scan.stamp, nullptr, EdgeKind::kOdometry);
+      AddNode(scan.stamp, floor, nullptr, EdgeKind::kOdometry);
     }
   }
-  RecordScan(scan, interval.in_transit);
+  RecordScan(scan, interval);
 }
 
 // Exit on the old floor, entry on the new one, both odometry-only (III-B): what lies between them
 // is one edge, and the mask starts afresh.
 void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
-  const FloorId floor = result_.graph.nodes().back().floor;
-  const bool other_floor = static_cast<FloorId>(interval.level) != floor;
+  const FloorId old_floor = result_.graph.nodes().back().floor;
+  const auto floor = static_cast<FloorId>(interval.level);
+  const bool other_floor = floor != old_floor;
   if (!in_transit_ && (interval.in_transit || other_floor)) {
-    AddNode(stamp, nullptr, EdgeKind::kOdometry);
+    AddNode(stamp, old_floor, nullptr, EdgeKind::kOdometry);
     in_transit_ = true;
+    motion_.EnterTransit();
   }
   if (in_transit_ && !interval.in_transit) {
-    AddNode(stamp, nullptr, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
+    AddNode(stamp, floor, nullptr, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
     in_transit_ = false;
     last_scan_node_.reset();
     mask_->Restart();
@@ -105,11 +108,12 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
   }
 }
 
-NodeId MaskedMapper::AddNode(double stamp, ScanPoints::ConstPtr points_in_robot, EdgeKind kind) {
+NodeId MaskedMapper::AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot,
+                             EdgeKind kind) {
   PoseGraph& graph = result_.graph;
   Node node;
   node.stamp = stamp;
-  node.floor = static_cast<FloorId>(floors_.At(stamp).level);
+  node.floor = floor;
   node.T_odom_robot = motion_.T_odom_robot();
   node.points_in_robot = std::move(points_in_robot);
   const bool has_scan = node.HasScan();
@@ -211,7 +215,7 @@ void MaskedMapper::AddValidated(const std::vector<HypothesisId>& validated) {
   }
 }
 
-void MaskedMapper::RecordScan(const LaserScan& scan, bool in_transit) {
+void MaskedMapper::RecordScan(const LaserScan& scan, const FloorInterval& interval) {
   const Pose2& T_odom_robot = motion_.T_odom_robot();
   const bool is_first = result_.trajectory.empty();
   if (!is_first) {
@@ -220,11 +224,11 @@ void MaskedMapper::RecordScan(const LaserScan& scan, bool in_transit) {
   TrajectoryPose pose;
   pose.stamp = scan.stamp;
   pose.node_before = static_cast<NodeId>(result_.graph.nodes().size() - 1);
-  pose.floor = result_.graph.nodes().back().floor;
-  pose.in_transit = in_transit;
+  pose.floor = static_cast<FloorId>(interval.level);
+  pose.in_transit = interval.in_transit;
   pose.T_odom_robot = T_odom_robot;
   result_.trajectory.push_back(pose);
-  if (in_transit) return;
+  if (interval.in_transit) return;
   const bool turned =
       !result_.kept_scans.empty() &&
       std::abs(WrapAngle(

@@ -168,6 +168,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "m of travel over which alignments err independently"},
       {"motion.scans.decorrelation_angle_deg", &motion.scans.decorrelation_angle_deg, 0.1, 3600,
        "deg of turn over which alignments err independently"},
+      {"motion.scans.transit_reach_m", &motion.scans.transit_reach_m, 0.5, 1000,
+       "m; in transit only walls this near are matched"},
       {"motion.scans.min_inlier_share", &motion.scans.min_inlier_share, 0, 1,
        "share of agreeing points below which other guesses are tried"},
       {"motion.scans.repeat_difference_m", &motion.scans.repeat_difference_m, 0, 100,

@@ -20,11 +20,21 @@ Eigen::Matrix3d PriorInformation(const Pose2& T_map_start, const UncertainPose2&
   return covariance.inverse();
 }
 
+ScanPoints::ConstPtr PointsWithin(const ScanPoints::ConstPtr& points_in_robot, double reach_m) {
+  if (std::isinf(reach_m)) return points_in_robot;
+  ScanPoints::Ptr near(new ScanPoints);
+  for (const pcl::PointXY& point : *points_in_robot) {
+    if (std::hypot(point.x, point.y) <= reach_m) near->push_back(point);
+  }
+  return near;
+}
+
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
 
 }  // namespace
 
-void ScanOdometry::Restart() {
+void ScanOdometry::Restart(double reach_m) {
+  reach_m_ = reach_m;
   map_.reset();
   next_map_.reset();
   T_map_keyframe_.reset();
@@ -70,8 +80,9 @@ void ScanOdometry::AddKeyframe(const ScanPoints& points) {
   T_map_keyframe_ = T_map_robot_;
 }
 
-UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now) {
-  const ScanPoints::ConstPtr points = PointsInRobot(scan);
+UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
+                                     bool must_match) {
+  const ScanPoints::ConstPtr points = PointsWithin(PointsInRobot(scan), reach_m_);
   const Pose2 T_map_last = T_map_robot_;
   UncertainPose2 step = T_last_now;
   if (!map_) {
@@ -87,7 +98,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   // A wheel that says "at rest" is believed; a guess without wheels is not.
   const bool is_sure = T_matched_robot_.covariance.topLeftCorner<2, 2>().trace() <
                        options_.match_distance_m * options_.match_distance_m;
-  if (is_sure && travelled < options_.match_distance_m &&
+  if (!must_match && is_sure && travelled < options_.match_distance_m &&
       turned < DegToRad(options_.match_angle_deg)) {
     // The next match answers for this step too: its uncertainty is not counted twice.
     step.covariance.setZero();

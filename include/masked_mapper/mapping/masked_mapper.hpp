@@ -36,13 +36,13 @@ class MaskedMapper {
  private:
   void ObserveScan(const LaserScan& scan);
   void ChangeFloor(const FloorInterval& interval, double stamp);
-  NodeId AddNode(double stamp, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
+  NodeId AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
   void CloseLoops(NodeId new_node);
   std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
   bool RefineMatch(ClosureAttempt& attempt);
   void AddValidated(const std::vector<HypothesisId>& validated);
   void Audit();
-  void RecordScan(const LaserScan& scan, bool in_transit);
+  void RecordScan(const LaserScan& scan, const FloorInterval& interval);
 
   Options options_;
   const FloorTimeline& floors_;

@@ -36,12 +36,15 @@ class MotionEstimator {
   explicit MotionEstimator(const MotionOptions& options);
 
   /// Observations in order of stamps. The path moves at scans; readings between them gather.
+  /// `must_match`: the scene is about to be left, so that no correction may wait.
   void Observe(const OdometryReading& reading);
-  void Observe(const LaserScan& scan);
+  void Observe(const LaserScan& scan, bool must_match = false);
   /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
   void StartNode() { T_node_robot_ = UncertainPose2{}; }
   /// The scene is another one (a floor was changed): the next scan is aligned to none before it.
   void RestartScans() { scan_odometry_.Restart(); }
+  /// The robot is in a cab or on stairs: only what is near stays the same when a door opens.
+  void EnterTransit() { scan_odometry_.Restart(options_.scans.transit_reach_m); }
 
   /// Pose at the scan observed last, along the path; frame `odom` is the robot's first pose.
   const Pose2& T_odom_robot() const { return T_odom_robot_; }

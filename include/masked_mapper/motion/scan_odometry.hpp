@@ -4,6 +4,7 @@
 // paper takes its motion from wheels and a gyro; this is ours.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
@@ -15,12 +16,13 @@ namespace masked_mapper {
 struct ScanOdometryOptions {
   LocalMapOptions map;
   double match_distance_m = 0.04;     ///< travel below which a scan is not matched: wheels suffice
-  double match_angle_deg = 0.5;       ///< and turn
+  double match_angle_deg = 0.2;       ///< and turn
   double keyframe_distance_m = 0.15;  ///< travel from one scan in the local map to the next
   double keyframe_angle_deg = 5.0;    ///< or turn
   int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
   double decorrelation_distance_m = 1.0;  ///< travel over which alignments err independently
   double decorrelation_angle_deg = 30.0;  ///< or turn
+  double transit_reach_m = 2.5;  ///< in transit only walls this near: beyond the door floors differ
   double min_inlier_share = 0.5;          ///< below it other guesses are tried
   double repeat_difference_m = 0.1;       ///< between wheels and the step before, to try both
   double lost_inlier_share = 0.25;        ///< below it after all guesses the scan is not believed
@@ -32,10 +34,14 @@ class ScanOdometry {
 
   /// Motion since the scan before (or the first scan: identity), corrected. `T_last_now` is what
   /// the wheels say it was; without wheels a guess with a covariance to match.
-  UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now);
+  /// `must_match`: match this scan however little the robot moved, since what is not corrected now
+  /// never will be.
+  UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
+                         bool must_match = false);
 
-  /// The robot is somewhere else altogether: forget the local maps, go on from here.
-  void Restart();
+  /// The robot is somewhere else altogether: forget the local maps, go on from here. Points farther
+  /// than `reach_m` from the robot are not looked at from now on.
+  void Restart(double reach_m = std::numeric_limits<double>::infinity());
 
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
@@ -54,6 +60,7 @@ class ScanOdometry {
   std::optional<LocalMap> map_;       ///< matched against
   std::optional<LocalMap> next_map_;  ///< grows until it is large enough to take over
   double inlier_share_ = 1.0;
+  double reach_m_ = std::numeric_limits<double>::infinity();
   int lost_ = 0;  ///< scans in a row that were not believed
 };
 
