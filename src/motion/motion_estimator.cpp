@@ -18,7 +18,8 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
   const bool has_wheels = wheels_.HasStarted() && options_.source != MotionSource::kScans;
   UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
   wheels_.StartNode();
-  if (options_.source != MotionSource::kOdometry) step = scan_odometry_.Observe(scan, step, must_match);
+  if (options_.source != MotionSource::kOdometry)
+    step = scan_odometry_.Observe(scan, step, must_match);
   last_step_s_ = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;
   last_scan_stamp_ = scan.stamp;
   last_step_ = step;

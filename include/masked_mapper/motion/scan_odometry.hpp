@@ -23,9 +23,9 @@ struct ScanOdometryOptions {
   double decorrelation_distance_m = 1.0;  ///< travel over which alignments err independently
   double decorrelation_angle_deg = 30.0;  ///< or turn
   double transit_reach_m = 2.5;  ///< in transit only walls this near: beyond the door floors differ
-  double min_inlier_share = 0.5;          ///< below it other guesses are tried
-  double repeat_difference_m = 0.1;       ///< between wheels and the step before, to try both
-  double lost_inlier_share = 0.25;        ///< below it after all guesses the scan is not believed
+  double min_inlier_share = 0.5;     ///< below it other guesses are tried
+  double repeat_difference_m = 0.1;  ///< between wheels and the step before, to try both
+  double lost_inlier_share = 0.25;   ///< below it after all guesses the scan is not believed
 };
 
 class ScanOdometry {
