@@ -113,7 +113,7 @@ inline MappingResult SampleMap() {
   }
   const auto attempt = [&](ClosureState state, const std::string& reason) {
     map.attempts.push_back(
-        {1, 0, {Between(poses[1], poses[0]), covariance}, 0.625, 1.5, 6, state, reason});
+        {1, 0, {Between(poses[1], poses[0]), covariance}, 0.625, 1.5, 0.0, 6, state, reason});
   };
   attempt(ClosureState::kValidated, "");
   attempt(ClosureState::kHypothesis, "2 of 6 votes");
