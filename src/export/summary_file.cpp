@@ -65,6 +65,29 @@ Summary::Counts CountsOf(const MappingResult& result) {
   return counts;
 }
 
+std::string MotionName(MotionSource source) {
+  switch (source) {
+    case MotionSource::kAuto:
+      return "auto";
+    case MotionSource::kOdometry:
+      return "odometry";
+    case MotionSource::kScans:
+      return "scans";
+    case MotionSource::kFused:
+      return "fused";
+  }
+  return "";
+}
+
+// The stages follow each other, so that they add up to the whole.
+StageSeconds WithTotal(StageSeconds seconds) {
+  if (seconds.total > 0.0) return seconds;
+  seconds.total = seconds.read + seconds.motion + seconds.mask + seconds.projection +
+                  seconds.matching + seconds.validation + seconds.optimisation + seconds.rendering +
+                  seconds.export_;
+  return seconds;
+}
+
 Json CountsJson(const Summary::Counts& counts) {
   return {{"observations", counts.observations},
           {"scans", counts.scans},
@@ -131,7 +154,8 @@ Summary Summarise(const MappingResult& result, const RunDescription& run,
                               nodes, KnownArea(grids.at(i))});
   }
   summary.rejections = RejectionsOf(result.attempts);
-  summary.seconds = result.seconds;
+  summary.motion_source = MotionName(result.motion_source);
+  summary.seconds = WithTotal(result.seconds);
   summary.peak_memory_mib = PeakMemoryMib();
   summary.warnings = result.warnings;
   return summary;
@@ -140,6 +164,7 @@ Summary Summarise(const MappingResult& result, const RunDescription& run,
 void WriteSummary(const Summary& summary, const std::filesystem::path& path) {
   const Json json = {{"log", summary.run.log},
                      {"mask", summary.run.mask},
+                     {"motion_source", summary.motion_source},
                      {"counts", CountsJson(summary.counts)},
                      {"floors", FloorsJson(summary.floors)},
                      {"seconds", SecondsJson(summary.seconds)},

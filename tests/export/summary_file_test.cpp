@@ -42,8 +42,8 @@ std::vector<std::string> Keys(const Json& json) {
 TEST(SummaryFile, HasTheKeysOfTheContract) {
   const Json json = Written(SampleSummary());
   using Names = std::vector<std::string>;
-  EXPECT_EQ(Keys(json), (Names{"log", "mask", "counts", "floors", "seconds", "peak_memory_mib",
-                               "options", "warnings"}));
+  EXPECT_EQ(Keys(json), (Names{"log", "mask", "motion_source", "counts", "floors", "seconds",
+                               "peak_memory_mib", "options", "warnings"}));
   EXPECT_EQ(Keys(json["counts"]), (Names{"observations", "scans", "nodes", "scan_nodes",
                                          "odometry_nodes", "attempted", "matched", "validated"}));
   EXPECT_EQ(Keys(json["floors"][0]),
@@ -72,6 +72,21 @@ TEST(SummaryFile, CountsAddUp) {
   EXPECT_EQ(json["floors"][1]["elevation_measured"], false);
   EXPECT_EQ(json["seconds"]["read"], 0.5);
   EXPECT_GT(json["peak_memory_mib"].get<double>(), 1.0);
+}
+
+TEST(SummaryFile, TotalIsTheSumOfTheStagesUnlessMeasured) {
+  MappingResult map = SampleMap();
+  EXPECT_EQ(Summarise(map, {}, {{}, {}}).seconds.total, 1.25);
+  map.seconds = {};
+  map.seconds.read = 0.5;
+  map.seconds.matching = 0.25;
+  EXPECT_EQ(Summarise(map, {}, {{}, {}}).seconds.total, 0.75);
+}
+
+TEST(SummaryFile, SaysWhichMotionWasUsed) {
+  MappingResult map = SampleMap();
+  map.motion_source = MotionSource::kScans;
+  EXPECT_EQ(Written(Summarise(map, {}, {{}, {}}))["motion_source"], "scans");
 }
 
 TEST(SummaryFile, OptionsKeepTheirKinds) {

@@ -45,6 +45,7 @@ struct Summary {
   };
 
   RunDescription run;
+  std::string motion_source;  ///< the one that was used: odometry, scans or fused
   Counts counts;
   std::vector<FloorEntry> floors;  ///< by FloorId, which is the field `label` of the clouds
   /// Attempts that did not become closures, by reason; most frequent first.
@@ -54,7 +55,8 @@ struct Summary {
   std::vector<std::string> warnings;
 };
 
-/// `grids` by FloorId. Seconds are the result's; the peak of memory is that of the process up to
+/// `grids` by FloorId. Seconds are the result's, their total the
+/// sum of the stages unless the result has one; the peak of memory is that of the process up to
 /// now.
 Summary Summarise(const MappingResult& result, const RunDescription& run,
                   const std::vector<OccupancyGrid>& grids);
