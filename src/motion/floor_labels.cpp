@@ -62,16 +62,68 @@ double Distance(const FloorTransit& transit, const TimeSpan& change) {
   return std::max({0.0, change.start - transit.end, transit.start - change.end});
 }
 
-/// What the sensor found at a change of labels.
+/// From one stay to the next, with what a sensor found there.
 struct Change {
-  TimeSpan span;  ///< from the stay before to the stay after
+  TimeSpan span;  ///< in which the robot was in transit, or the moment of the label
   std::vector<FloorTransit> transits;
+
+  /// Empty when no sensor measured it.
+  std::optional<double> Climb() const {
+    double climb = 0.0;
+    for (const FloorTransit& transit : transits) {
+      if (!transit.climb) return std::nullopt;
+      climb += *transit.climb;
+    }
+    return transits.empty() ? std::nullopt : std::optional<double>(climb);
+  }
+  double ClimbSigma() const {
+    double variance = 0.0;
+    for (const FloorTransit& transit : transits) {
+      variance += transit.climb_sigma * transit.climb_sigma;
+    }
+    return std::sqrt(variance);
+  }
 };
 
-std::vector<Change> ChangesOf(const std::vector<Stay>& stays) {
+/// Where labels and sensor do not go together.
+struct Contradictions {
+  std::size_t count = 0;
+  double first = kInfinity;  ///< s
+
+  void Add(double stamp) {
+    ++count;
+    if (std::isfinite(stamp)) first = std::min(first, stamp);
+  }
+};
+
+/// Each transit goes to the change of labels nearest in time.
+std::vector<Change> ChangesOf(const std::vector<Stay>& stays,
+                              const std::vector<FloorTransit>& transits,
+                              const FloorLabelOptions& options, const StoreyOptions& storeys,
+                              Contradictions& contradictions) {
   std::vector<Change> changes;
   for (std::size_t k = 0; k + 1 < stays.size(); ++k) {
     changes.push_back({{stays[k].span.end, stays[k + 1].span.start}, {}});
+  }
+  for (const FloorTransit& transit : transits) {
+    // Changes are in order of time: the nearest is the first that ends after the transit's start,
+    // or the one before or behind that.
+    const auto later = std::lower_bound(
+        changes.begin(), changes.end(), transit.start,
+        [](const Change& change, double start) { return change.span.end < start; });
+    auto nearest = changes.end();
+    for (auto it = later == changes.begin() ? later : later - 1;
+         it != changes.end() && it - later <= 1; ++it) {
+      if (nearest == changes.end() ||
+          Distance(transit, it->span) < Distance(transit, nearest->span)) {
+        nearest = it;
+      }
+    }
+    if (nearest != changes.end() && Distance(transit, nearest->span) <= options.late_s) {
+      nearest->transits.push_back(transit);
+    } else if (!transit.climb || std::abs(*transit.climb) >= LeastClimb(storeys)) {
+      contradictions.Add(transit.start);
+    }
   }
   return changes;
 }
@@ -110,29 +162,105 @@ std::vector<FloorLevel> WithAssumedHeights(std::vector<FloorLevel> levels,
   return levels;
 }
 
-/// Steps that all others contradict by half a storey, worst first, are taken out.
-struct TrustedSteps {
-  std::vector<LevelHeight> heights;
-  std::size_t distrusted = 0;
-};
-TrustedSteps EstimateFromTrusted(std::size_t level_count, std::vector<LevelStep> steps,
-                                 const StoreyOptions& storeys) {
-  TrustedSteps result;
+/// Elevations from the steps that the others do not contradict by half a storey. Round by round
+/// the worst go, and those nearly as bad.
+std::vector<LevelHeight> HeightsOfTrusted(std::size_t level_count, std::vector<LevelStep> steps,
+                                          const StoreyOptions& storeys,
+                                          Contradictions& contradictions) {
   for (;;) {
-    result.heights = EstimateLevelHeights(level_count, steps);
-    std::size_t worst = steps.size();
-    double worst_error = 0.5 * storeys.min_gap;
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-      const double error = std::abs(result.heights[steps[k].to].elevation -
-                                    result.heights[steps[k].from].elevation - steps[k].climb);
-      if (error <= worst_error) continue;
-      worst_error = error;
-      worst = k;
-    }
-    if (worst == steps.size()) return result;
-    steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(worst));
-    ++result.distrusted;
+    const std::vector<LevelHeight> heights = EstimateLevelHeights(level_count, steps);
+    const auto error = [&](const LevelStep& step) {
+      return std::abs(heights[step.to].elevation - heights[step.from].elevation - step.climb);
+    };
+    double worst = 0.0;
+    for (const LevelStep& step : steps) worst = std::max(worst, error(step));
+    if (worst <= 0.5 * storeys.min_gap) return heights;
+    const auto bad = std::remove_if(steps.begin(), steps.end(), [&](const LevelStep& step) {
+      return error(step) > std::max(0.5 * storeys.min_gap, 0.8 * worst);
+    });
+    for (auto it = bad; it != steps.end(); ++it) contradictions.Add(kInfinity);
+    steps.erase(bad, steps.end());
   }
+}
+
+std::vector<FloorLevel> LevelsOf(const Stays& said, const std::vector<Change>& changes,
+                                 bool has_sensor, const StoreyOptions& storeys,
+                                 Contradictions& contradictions) {
+  std::vector<LevelStep> steps;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const std::optional<double> climb = changes[k].Climb();
+    const std::size_t from = said.stays[k].level;
+    const std::size_t to = said.stays[k + 1].level;
+    const bool same_height = std::abs(climb.value_or(0.0)) < LeastClimb(storeys);
+    const bool is_seen = climb || (has_sensor && changes[k].transits.empty());
+    if (is_seen && (from == to) != same_height) contradictions.Add(changes[k].span.start);
+    if (climb && from != to && !same_height) {
+      steps.push_back({from, to, *climb, std::max(changes[k].ClimbSigma(), 1e-3)});
+    }
+  }
+  const std::vector<LevelHeight> heights =
+      HeightsOfTrusted(said.labels.size(), steps, storeys, contradictions);
+  std::vector<FloorLevel> levels;
+  for (std::size_t i = 0; i < said.labels.size(); ++i) {
+    FloorLevel level;
+    level.label = said.labels[i];
+    level.elevation = heights[i].elevation;
+    level.elevation_sigma = heights[i].sigma;
+    level.elevation_measured = heights[i].measured;
+    levels.push_back(level);
+  }
+  levels = WithAssumedHeights(std::move(levels), storeys);
+  // With nothing measured at all, the first level's zero is no measurement either.
+  if (steps.empty()) levels.front().elevation_measured = false;
+  return levels;
+}
+
+/// When the robot was in transit at a change for which no label says so: as the sensor found it, or
+/// while the wheels rest around the label. Between `earliest` and `latest`, where other floors are.
+TimeSpan UnsaidTransit(const Change& change, double earliest, double latest,
+                       const WheelTrack& track, const FloorLabelOptions& options) {
+  TimeSpan span = change.span;
+  if (!change.transits.empty()) {
+    span = {change.transits.front().start, change.transits.back().end};
+  } else if (track.Travels()) {
+    const TimeSpan rest = track.StayAround(change.span.start, options.cab_radius);
+    if (rest.Duration() >= options.least_stay_s) span = rest;
+  }
+  span = {std::max(span.start, earliest), std::min(span.end, latest)};
+  return span.end > span.start ? span : change.span;
+}
+
+std::vector<FloorInterval> IntervalsOf(const std::vector<Stay>& stays,
+                                       const std::vector<Change>& changes, const WheelTrack& track,
+                                       const FloorLabelOptions& options) {
+  std::vector<FloorInterval> intervals;
+  double start = stays.front().span.start;
+  if (start > -kInfinity) intervals.push_back({-kInfinity, 0, true});
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const std::size_t left = stays[k].level;
+    const std::size_t reached = stays[k + 1].level;
+    intervals.push_back({start, left, false});
+    const Change& change = changes[k];
+    TimeSpan span = change.span;
+    if (span.Duration() <= 0.0) {
+      span = UnsaidTransit(change, start, stays[k + 1].span.end, track, options);
+    }
+    start = span.end;
+    if (span.Duration() <= 0.0) continue;
+    intervals.push_back({span.start, left, true});
+    if (left == reached) continue;
+    double middle = 0.5 * (span.start + span.end);
+    if (!change.transits.empty()) {
+      middle = 0.5 * (change.transits.front().middle + change.transits.back().middle);
+      middle = std::clamp(middle, span.start, span.end);
+    }
+    intervals.push_back({middle, reached, true});
+  }
+  intervals.push_back({start, stays.back().level, false});
+  if (stays.back().span.end < kInfinity) {
+    intervals.push_back({stays.back().span.end, stays.back().level, true});
+  }
+  return intervals;
 }
 
 std::string At(double stamp) {
@@ -153,102 +281,23 @@ LabelledTimeline TimelineOfLabels(const std::vector<FloorLabel>& labels,
                                   const std::vector<FloorTransit>& transits,
                                   const std::string& sensor, const WheelTrack& track,
                                   const FloorLabelOptions& options, const StoreyOptions& storeys) {
+  constexpr std::size_t kMostFloors = 500;
   const Stays said = StaysOf(labels);
-  const std::vector<Stay>& stays = said.stays;
-  std::vector<Change> changes = ChangesOf(stays);
-
-  // Each transit goes to the change of labels nearest in time.
-  std::vector<double> contradictions;
-  for (const FloorTransit& transit : transits) {
-    const auto nearest =
-        std::min_element(changes.begin(), changes.end(), [&](const Change& a, const Change& b) {
-          return Distance(transit, a.span) < Distance(transit, b.span);
-        });
-    if (nearest != changes.end() && Distance(transit, nearest->span) <= options.late_s) {
-      nearest->transits.push_back(transit);
-    } else if (!transit.climb || std::abs(*transit.climb) >= LeastClimb(storeys)) {
-      contradictions.push_back(transit.start);
-    }
+  if (said.labels.size() > kMostFloors) {
+    throw InputError("more than " + std::to_string(kMostFloors) + " different floor labels");
   }
-
-  // Heights.
-  std::vector<LevelStep> steps;
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    double climb = 0.0;
-    double variance = 0.0;
-    bool is_known = !changes[k].transits.empty();
-    for (const FloorTransit& transit : changes[k].transits) {
-      is_known &= transit.climb.has_value();
-      climb += transit.climb.value_or(0.0);
-      variance += transit.climb_sigma * transit.climb_sigma;
-    }
-    const bool same_level = stays[k].level == stays[k + 1].level;
-    const bool same_height = std::abs(climb) < LeastClimb(storeys);
-    if (!sensor.empty() && (is_known || changes[k].transits.empty()) && same_level != same_height) {
-      contradictions.push_back(changes[k].span.start);
-    }
-    if (!is_known || same_level || same_height) continue;
-    steps.push_back({stays[k].level, stays[k + 1].level, climb, std::sqrt(variance)});
-  }
-  const TrustedSteps trusted = EstimateFromTrusted(said.labels.size(), steps, storeys);
-
+  Contradictions contradictions;
+  const std::vector<Change> changes =
+      ChangesOf(said.stays, transits, options, storeys, contradictions);
   LabelledTimeline result;
-  FloorTimeline& timeline = result.timeline;
-  timeline.levels.clear();
-  for (std::size_t i = 0; i < said.labels.size(); ++i) {
-    FloorLevel level;
-    level.label = said.labels[i];
-    level.elevation = trusted.heights[i].elevation;
-    level.elevation_sigma = trusted.heights[i].sigma;
-    level.elevation_measured = trusted.heights[i].measured;
-    timeline.levels.push_back(level);
-  }
-  timeline.levels = WithAssumedHeights(std::move(timeline.levels), storeys);
-  // With nothing measured at all, the first level's zero is no measurement either.
-  if (steps.empty()) timeline.levels.front().elevation_measured = false;
-
-  // Times.
-  timeline.intervals.clear();
-  if (stays.front().span.start > -kInfinity) timeline.intervals.push_back({-kInfinity, 0, true});
-  for (std::size_t k = 0; k < stays.size(); ++k) {
-    TimeSpan next = {stays[k].span.end, kInfinity};
-    const double start = k == 0 ? stays[k].span.start : changes[k - 1].span.end;
-    timeline.intervals.push_back({start, stays[k].level, false});
-    if (k + 1 == stays.size()) {
-      if (next.start < kInfinity) timeline.intervals.push_back({next.start, stays[k].level, true});
-      break;
-    }
-    Change& change = changes[k];
-    if (change.span.Duration() <= 0.0) {
-      const double stamp = change.span.start;
-      if (!change.transits.empty()) {
-        change.span = {change.transits.front().start, change.transits.back().end};
-      } else if (track.Travels()) {
-        const TimeSpan rest = track.StayAround(stamp, options.cab_radius);
-        if (rest.Duration() >= options.least_stay_s) change.span = rest;
-      }
-      // Never past the neighbouring changes of labels.
-      change.span.start = std::max(change.span.start, start);
-      change.span.end = std::min(change.span.end, stays[k + 1].span.end);
-    }
-    if (!(change.span.Duration() > 0.0)) continue;
-    timeline.intervals.push_back({change.span.start, stays[k].level, true});
-    if (stays[k].level == stays[k + 1].level) continue;
-    double middle = 0.5 * (change.span.start + change.span.end);
-    if (!change.transits.empty()) {
-      middle = 0.5 * (change.transits.front().middle + change.transits.back().middle);
-      middle = std::clamp(middle, change.span.start, change.span.end);
-    }
-    timeline.intervals.push_back({middle, stays[k + 1].level, true});
-  }
-
-  const std::size_t count = contradictions.size() + trusted.distrusted;
-  if (count > 0) {
+  result.timeline.levels = LevelsOf(said, changes, !sensor.empty(), storeys, contradictions);
+  result.timeline.intervals = IntervalsOf(said.stays, changes, track, options);
+  if (contradictions.count > 0) {
     std::string line = "floor labels and " + sensor + " contradict each other " +
-                       std::to_string(count) + (count == 1 ? " time" : " times");
-    if (!contradictions.empty()) {
-      const double first = *std::min_element(contradictions.begin(), contradictions.end());
-      if (std::isfinite(first)) line += " (first at " + At(first) + ")";
+                       std::to_string(contradictions.count) +
+                       (contradictions.count == 1 ? " time" : " times");
+    if (std::isfinite(contradictions.first)) {
+      line += " (first at " + At(contradictions.first) + ")";
     }
     result.warnings.push_back(line + ": the labels are believed");
   }

@@ -11,6 +11,7 @@ namespace masked_mapper {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostLevels = 200;  // more are noise, and go to the nearest
 
 /// The level of each spell between transits (one more than transits), numbered by first use.
 struct Assignment {
@@ -33,7 +34,7 @@ Assignment AssignInOrder(const std::vector<FloorTransit>& transits, const Storey
     std::optional<std::size_t> reached;
     if (transit.climb) {
       const double elevation = elevations[left] + *transit.climb;
-      double nearest = 0.5 * options.min_gap;
+      double nearest = elevations.size() < kMostLevels ? 0.5 * options.min_gap : kInfinity;
       for (std::size_t level = 0; level < elevations.size(); ++level) {
         const double distance = std::abs(elevations[level] - elevation);
         if (distance > nearest) continue;
@@ -43,6 +44,8 @@ Assignment AssignInOrder(const std::vector<FloorTransit>& transits, const Storey
       // A climb too small for a floor, and none where it leads: still the floor that was left.
       if (!reached && std::abs(*transit.climb) < LeastClimb(options)) reached = left;
       if (!reached) elevations.push_back(elevation);
+    } else if (elevations.size() >= kMostLevels) {
+      reached = left;
     } else {
       // From an unknown level on, elevations count from a zero of their own, out of all reach.
       const double highest = *std::max_element(elevations.begin(), elevations.end());

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <string>
 
 #include "masked_mapper/log/input_error.hpp"
 
@@ -110,6 +112,39 @@ TEST(FloorLabels, WinOverPressureAndSaySoOnce) {
   ASSERT_EQ(labelled.warnings.size(), 1U);
   EXPECT_NE(labelled.warnings[0].find("2 times"), std::string::npos) << labelled.warnings[0];
   EXPECT_NE(labelled.warnings[0].find("100.000 s"), std::string::npos) << labelled.warnings[0];
+}
+
+TEST(FloorLabels, IntervalsStayInOrderWhateverIsClaimed) {
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<FloorLabel> labels = {{0.0, "0"}};
+    double stamp = 0.0;
+    for (int k = 0; k < 12; ++k) {
+      stamp += static_cast<double>(random() % 60);
+      labels.push_back({stamp, random() % 4 == 0 ? "-" : std::to_string(random() % 4)});
+    }
+    std::vector<FloorTransit> transits;
+    stamp = 0.0;
+    for (int k = 0; k < 6; ++k) {
+      stamp += static_cast<double>(random() % 100);
+      transits.push_back({stamp, stamp + 10.0, stamp + 30.0,
+                          3.5 * (static_cast<double>(random() % 5) - 2.0), 0.1});
+      stamp += 30.0;
+    }
+    const FloorTimeline timeline = Timeline(labels, transits, "pressure").timeline;
+    for (std::size_t i = 0; i < timeline.intervals.size(); ++i) {
+      ASSERT_LT(timeline.intervals[i].level, timeline.levels.size());
+      if (i > 0) {
+        ASSERT_GE(timeline.intervals[i].start, timeline.intervals[i - 1].start) << trial;
+      }
+    }
+  }
+}
+
+TEST(FloorLabels, MoreFloorsThanAnyBuildingAreRefused) {
+  std::vector<FloorLabel> labels;
+  for (int k = 0; k < 2000; ++k) labels.push_back({1.0 * k, std::to_string(k)});
+  EXPECT_THROW(Timeline(labels), InputError);
 }
 
 TEST(FloorLabels, OneWrongClimbDoesNotMoveTheFloors) {

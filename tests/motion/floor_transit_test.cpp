@@ -130,6 +130,13 @@ TEST(TimelineOfTransits, ALogWhollyInACabIsAllTransit) {
   EXPECT_TRUE(timeline.At(0.0).in_transit);
 }
 
+TEST(TimelineOfTransits, NoiseMakesNoEndlessTower) {
+  std::mt19937 random(9);
+  std::vector<double> climbs;
+  for (int k = 0; k < 3000; ++k) climbs.push_back(static_cast<double>(random() % 100000) - 5e4);
+  EXPECT_LE(TimelineOfTransits(Rides(climbs), {}).levels.size(), 200U);
+}
+
 TEST(TimelineOfTransits, UnknownClimbsOpenLevelsThatMayBeAny) {
   std::vector<FloorTransit> transits = Rides({0.0, 0.0});
   for (FloorTransit& transit : transits) transit.climb.reset();

@@ -15,7 +15,7 @@ namespace masked_mapper {
 
 struct FloorLabelOptions {
   double late_s = 60.0;       ///< s by which a label may be late or early, where none says `-`
-  double cab_radius = 0.5;    ///< m within which a robot stays while it turns round in a cab
+  double cab_radius = 0.25;   ///< m within which a robot stays while it turns round in a cab
   double least_stay_s = 4.0;  ///< s that wheels rest in an elevator at least
 };
 
@@ -29,6 +29,7 @@ struct LabelledTimeline {
 
 /// `labels` in order of stamps, at least one that is not `-`. `transits` are those that a sensor
 /// found (`sensor` is its name, for what is said when it contradicts), none if there is no sensor.
+/// Throws InputError when there are more labels than any building has floors.
 LabelledTimeline TimelineOfLabels(const std::vector<FloorLabel>& labels,
                                   const std::vector<FloorTransit>& transits,
                                   const std::string& sensor, const WheelTrack& track,
