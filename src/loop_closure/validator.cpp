@@ -42,6 +42,7 @@ LoopValidator::LoopValidator(const ValidatorOptions& options) : options_(options
 std::vector<HypothesisId> LoopValidator::Judge(const PoseGraph& graph,
                                                const std::vector<Hypothesis>& matches) {
   newly_valid_.clear();
+  int known_ties = ties_;
   const auto is_node = [&](NodeId id) {
     return id >= 0 && static_cast<std::size_t>(id) < graph.nodes().size();
   };
@@ -54,9 +55,9 @@ std::vector<HypothesisId> LoopValidator::Judge(const PoseGraph& graph,
     JudgeOne(graph, id);
     search_.Add(id, hypotheses_.back());
   }
-  // What entered may be the sure way that others were waiting for.
-  for (int before = -1; before != validated_ && !newly_valid_.empty();) {
-    before = validated_;
+  // What entered without a sure way may be the sure way that others were waiting for.
+  while (known_ties != ties_) {
+    known_ties = ties_;
     const std::vector<HypothesisId> waiting = waiting_;
     for (const HypothesisId id : waiting) Admit(graph, id);
   }
@@ -73,7 +74,8 @@ void LoopValidator::JudgeOne(const PoseGraph& graph, HypothesisId id) {
   RemovedSteps removed;
   std::vector<std::vector<HypothesisId>> heard;  // companions of loose loops
   for (int loops = 0; loops < options_.max_loops; ++loops) {
-    if (hypotheses_[static_cast<std::size_t>(id)].validated) return;
+    const Hypothesis& now = hypotheses_[static_cast<std::size_t>(id)];
+    if (now.validated || (now.votes == 0 && loops >= options_.hopeless_loops)) return;
     const std::optional<LeastErrorPath> path =
         search_.Find(graph, hypotheses_, judged.a, judged.b, options_.max_loop_trace, removed);
     if (!path) return;
@@ -131,16 +133,15 @@ void LoopValidator::Admit(const PoseGraph& graph, HypothesisId id) {
   if (hypothesis.validated || hypothesis.votes < options_.votes_needed) return;
   Standing& standing = standings_[static_cast<std::size_t>(id)];
   if (standing.refused_with_places == standing.places.size() &&
-      standing.refused_with_validated == validated_) {
+      standing.refused_with_ties == ties_) {
     return;
   }
   if (!MayEnter(graph, id)) {
     standing.refused_with_places = standing.places.size();
-    standing.refused_with_validated = validated_;
+    standing.refused_with_ties = ties_;
     return;
   }
   hypothesis.validated = true;
-  ++validated_;
   newly_valid_.push_back(id);
   waiting_.erase(std::remove(waiting_.begin(), waiting_.end(), id), waiting_.end());
 }
@@ -157,10 +158,15 @@ bool LoopValidator::MayEnter(const PoseGraph& graph, HypothesisId id) {
     if (!path || path->unvalidated > 0) continue;
     const UncertainPose2 loop = path->T_from_to * Inverse(hypothesis.T_a_b);
     const double error = MahalanobisFromIdentity(loop);
-    return error <= options_.max_contradiction && places >= PlacesNeeded(options_, loop, error);
+    const bool enters =
+        error <= options_.max_contradiction && places >= PlacesNeeded(options_, loop, error);
+    ties_ += enters && max_trace == kNoLimit ? 1 : 0;
+    return enters;
   }
   // No validated way at all: two maps that only unvalidated closures join.
-  return places >= 2 * options_.places_needed;
+  const bool enters = places >= 2 * options_.places_needed;
+  ties_ += enters ? 1 : 0;
+  return enters;
 }
 
 }  // namespace masked_mapper

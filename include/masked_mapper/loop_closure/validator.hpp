@@ -22,8 +22,8 @@ namespace masked_mapper {
 
 struct ValidatorOptions {
   int votes_needed = 6;  ///< paper: 6
-  double max_loop_error =
-      2.0;  ///< Mahalanobis distance from identity of an agreeing loop; paper: 2
+  /// Mahalanobis distance from the identity below which a loop agrees; paper: 2
+  double max_loop_error = 2.0;
 
   /// Trace (m^2 and rad^2, Eq. 2) beyond which a loop would agree with whatever the matcher finds
   /// and is no evidence. The search ends there, which also keeps its cost apart from the size of
@@ -42,10 +42,11 @@ struct ValidatorOptions {
   /// Mahalanobis distance of the best validated way beyond which a closure stays out.
   double max_contradiction = 8.0;
 
-  int max_loops = 40;  ///< loops looked at for one hypothesis; ours
+  int max_loops = 40;       ///< loops looked at for one hypothesis; ours
+  int hopeless_loops = 12;  ///< after so many without one that agrees it is left; ours
 };
 
-/// The paper's rule: none of the conditions of ours (the bound on the number of loops stays).
+/// The paper's rule: none of the conditions of ours (the bounds on the number of loops stay).
 ValidatorOptions PaperRule();
 
 class LoopValidator {
@@ -68,7 +69,7 @@ class LoopValidator {
     std::vector<NodeId> places;  // newer ends of it and of those that agree with it, far apart
     // The last refusal, so that it is not worked out again while nothing has changed.
     std::size_t refused_with_places = 0;
-    int refused_with_validated = -1;
+    int refused_with_ties = -1;
   };
 
   void JudgeOne(const PoseGraph& graph, HypothesisId id);
@@ -81,7 +82,7 @@ class LoopValidator {
   std::vector<Standing> standings_;    // of the hypotheses
   std::vector<HypothesisId> waiting_;  // enough votes, not admitted yet
   LoopSearch search_;
-  int validated_ = 0;
+  int ties_ = 0;  // closures admitted without a sure way: each makes new sure ways
   std::vector<HypothesisId> newly_valid_;  // of the running call
 };
 

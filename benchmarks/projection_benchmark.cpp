@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a new node costs before and after matching: Dijkstra projection, candidates, loop
+// validation.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/pose_graph/dijkstra_projection.hpp"
+
+namespace masked_mapper {
+namespace {
+
+// A drive along the lanes of a grid, over and over: closures to the rounds before, right to a few
+// centimetres, and where every tenth match is wrong.
+class GridDrive {
+ public:
+  explicit GridDrive(int nodes) {
+    graph_.AddFloor({});
+    for (NodeId i = 0; i < nodes; ++i) {
+      const int step = i % (kSide * kSide);
+      const int lane = step / kSide;
+      const int along = lane % 2 == 0 ? step % kSide : kSide - 1 - step % kSide;
+      Node node;
+      node.T_world_robot = {5.0 * lane, 5.0 * along, lane % 2 == 0 ? kPi / 2 : -kPi / 2};
+      node.points_in_robot = ScanPoints::ConstPtr(new ScanPoints);
+      graph_.AddNode(node);
+      if (i > 0) graph_.AddEdge({i - 1, i, Measured(i - 1, i, 1.0), EdgeKind::kOdometry});
+    }
+  }
+
+  // Matches of a node with those of earlier rounds at its place and next to it.
+  std::vector<Hypothesis> Matches(NodeId a) {
+    std::uniform_int_distribution<int> ten(0, 9);
+    std::vector<Hypothesis> matches;
+    for (NodeId round = a - kSide * kSide; round >= 0; round -= kSide * kSide) {
+      for (const NodeId b : {round, round + 1}) {
+        if (matches.size() >= 5) return matches;
+        Hypothesis match;
+        match.a = a;
+        match.b = b;
+        match.T_a_b = Measured(a, b, 1.0);
+        if (ten(random_) == 0) match.T_a_b.mean = match.T_a_b.mean * Pose2{1.0, 1.0, 0.3};
+        matches.push_back(match);
+      }
+    }
+    return matches;
+  }
+
+  void Close(const Hypothesis& match) {
+    graph_.AddEdge({match.a, match.b, match.T_a_b, EdgeKind::kClosure});
+  }
+
+  const PoseGraph& graph() const { return graph_; }
+
+ private:
+  static constexpr int kSide = 30;
+
+  UncertainPose2 Measured(NodeId a, NodeId b, double scale) {
+    std::normal_distribution<double> normal;
+    const Eigen::Vector3d sigma = scale * Eigen::Vector3d(0.04, 0.04, 0.006);
+    const Pose2 T = Between(graph_.nodes()[static_cast<std::size_t>(a)].T_world_robot,
+                            graph_.nodes()[static_cast<std::size_t>(b)].T_world_robot);
+    return {{T.x + sigma.x() * normal(random_), T.y + sigma.y() * normal(random_),
+             T.theta + sigma.z() * normal(random_)},
+            sigma.cwiseAbs2().asDiagonal()};
+  }
+
+  std::mt19937 random_{1};
+  PoseGraph graph_;
+};
+
+void Project(benchmark::State& state) {
+  GridDrive drive(static_cast<int>(state.range(0)));
+  for (NodeId a = 900; a < static_cast<NodeId>(state.range(0)); a += 3) {
+    for (const Hypothesis& match : drive.Matches(a)) drive.Close(match);
+  }
+  const auto source = static_cast<NodeId>(state.range(0) - 1);
+  for (auto _ : state) benchmark::DoNotOptimize(DijkstraProjection(drive.graph(), source));
+}
+BENCHMARK(Project)->Arg(1000)->Arg(3000)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+void Candidates(benchmark::State& state) {
+  const GridDrive drive(static_cast<int>(state.range(0)));
+  const auto source = static_cast<NodeId>(state.range(0) - 1);
+  const std::vector<ProjectedNode> projection = DijkstraProjection(drive.graph(), source);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(FindCandidates(drive.graph(), source, projection, {}));
+  }
+}
+BENCHMARK(Candidates)->Arg(1000)->Arg(3000)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+// All matches of a drive over many rounds, judged as they come.
+void JudgeDrive(benchmark::State& state, const ValidatorOptions& options) {
+  double judged = 0.0;
+  double validated = 0.0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    GridDrive drive(static_cast<int>(state.range(0)));
+    LoopValidator validator(options);
+    judged = validated = 0.0;
+    for (NodeId a = 900; a < static_cast<NodeId>(state.range(0)); a += 10) {
+      const std::vector<Hypothesis> matches = drive.Matches(a);
+      state.ResumeTiming();
+      const std::vector<HypothesisId> valid = validator.Judge(drive.graph(), matches);
+      state.PauseTiming();
+      judged += static_cast<double>(matches.size());
+      validated += static_cast<double>(valid.size());
+      for (const HypothesisId id : valid) {
+        drive.Close(validator.hypotheses()[static_cast<std::size_t>(id)]);
+      }
+    }
+    state.ResumeTiming();
+  }
+  state.counters["hypotheses"] = judged;
+  state.counters["validated"] = validated;
+}
+BENCHMARK_CAPTURE(JudgeDrive, default, ValidatorOptions())
+    ->Arg(5000)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(JudgeDrive, paper_rule, PaperRule())->Arg(5000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace masked_mapper
