@@ -40,6 +40,8 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
                      ProgressSink& progress) {
   Options settled = options;
   settled.matcher.threads = ThreadCount(options.threads);
+  double total_seconds = 0.0;
+  std::optional<StageTimer> total_timer(std::in_place, total_seconds);
   double survey_seconds = 0.0;
   LogSurvey survey;
   {
@@ -75,6 +77,8 @@ MappingResult MapLog(const std::string& path, const std::string& mask, const Opt
   }
   WarnOfTheLog(path, result.log, result);
   for (const std::string& warning : result.warnings) progress.Warn(warning);
+  total_timer.reset();
+  result.seconds.total = total_seconds;
   return result;
 }
 

@@ -169,6 +169,13 @@ TEST(MapCommand, MapWritesTheContract) {
   const auto summary = nlohmann::json::parse(ReadText(out + "/summary.json"));
   EXPECT_EQ(summary.at("log"), folder / "ring.log.gz");
   EXPECT_EQ(summary.at("mask"), "openings");
+  double stages = 0.0;
+  for (const auto& [stage, seconds] : summary.at("seconds").items()) {
+    if (stage != "total") stages += seconds.get<double>();
+  }
+  const double total = summary.at("seconds").at("total");
+  EXPECT_LE(stages, total + 0.01);  // no stage is counted twice
+  EXPECT_GT(stages, 0.5 * total);   // and little is in none
   EXPECT_EQ(summary.at("counts").at("scans"), static_cast<int>(RingDrive(2).size()));
   EXPECT_EQ(summary.at("options").at("matcher.min_score"), 0.425);
   EXPECT_EQ(LinesIn(ReadText(out + "/trajectory.tum")), static_cast<long>(RingDrive(2).size()));
