@@ -220,13 +220,12 @@ std::vector<NodeId> NodesAround(const PoseGraph& graph, const std::vector<EdgeId
   return nodes;
 }
 
-// All edges that touch `moving`; what they lead to beyond stays, and the gauge always.
-Part PartAround(const PoseGraph& graph, const std::vector<NodeId>& moving,
-                const std::vector<NodeId>& gauge) {
+// All edges that touch `moving`; what they lead to beyond stays, and node 0 always. A component
+// that moves as a whole is held at its first node.
+Part PartAround(const PoseGraph& graph, const std::vector<NodeId>& moving) {
   Part part;
   std::vector<bool> moves(graph.nodes().size(), false);
-  for (const NodeId node : moving) moves[static_cast<std::size_t>(node)] = true;
-  for (const NodeId node : gauge) moves[static_cast<std::size_t>(node)] = false;
+  for (const NodeId node : moving) moves[static_cast<std::size_t>(node)] = node != 0;
   for (const NodeId node : moving) {
     const std::vector<EdgeId>& edges = graph.EdgesOf(node);
     part.edges.insert(part.edges.end(), edges.begin(), edges.end());
@@ -238,6 +237,9 @@ Part PartAround(const PoseGraph& graph, const std::vector<NodeId>& moving,
     for (const NodeId end : {edge.from, edge.to}) {
       if (!moves[static_cast<std::size_t>(end)]) part.fixed.push_back(end);
     }
+  }
+  if (part.fixed.empty()) {
+    part.fixed.push_back(*std::min_element(moving.begin(), moving.end()));
   }
   return part;
 }
@@ -296,22 +298,25 @@ OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
   summary.initial_chi2 = summary.final_chi2 = chi2;
   if (pulling.empty()) return summary;
 
-  const std::vector<NodeId> gauge = FirstOfEachComponent(graph);
+  std::vector<PoseBlock> poses = PosesOf(graph);
   constexpr std::size_t kGrowth = 3;
   auto count = static_cast<std::size_t>(std::max(2, options_.first_part_nodes));
   for (bool first = true; chi2 <= options_.far_off_chi2; first = false, count *= kGrowth) {
     const std::vector<NodeId> moving = NodesAround(graph, pulling, count);
     if (2 * moving.size() > graph.nodes().size()) break;
     if (!first && moving.size() * kGrowth < count) return summary;  // that was the whole component
-    const Part part = PartAround(graph, moving, gauge);
+    const Part part = PartAround(graph, moving);
     Costs costs = CostsOf(graph, part);
-    std::vector<PoseBlock> poses = PosesOf(graph);
     summary.initial_chi2 = Chi2(graph, part, costs, poses);
     Solution solution = SolveFrom(std::move(poses), options_.solver, graph, part, costs);
     summary.final_chi2 = solution.chi2;
     summary.iterations = solution.iterations;
     summary.converged = solution.converged;
-    SetPoses(solution.poses, graph);
+    poses = std::move(solution.poses);
+    for (const NodeId node : moving) {
+      const PoseBlock& pose = poses[static_cast<std::size_t>(node)];
+      graph.SetPose(node, {pose[0], pose[1], WrapAngle(pose[2])});
+    }
     const double gain = summary.initial_chi2 - summary.final_chi2;
     if (!first && gain < options_.negligible_gain) return summary;
   }
