@@ -11,6 +11,7 @@ namespace masked_mapper {
 /// code; throws InputError for what is the user's fault.
 using Run = std::function<int()>;
 
+void AddEvaluateCommand(CLI::App& program, Run& run);
 void AddInfoCommand(CLI::App& program, Run& run);
 void AddMapCommand(CLI::App& program, Run& run);
 void AddSimulateCommand(CLI::App& program, Run& run);

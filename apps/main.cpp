@@ -83,12 +83,14 @@ int Main(int argc, char** argv) {
   program.set_version_flag("--version", "masked_mapper " MASKED_MAPPER_VERSION);
   program.require_subcommand(1);
   Run run;
+  AddEvaluateCommand(program, run);
   AddInfoCommand(program, run);
   AddMapCommand(program, run);
   AddSimulateCommand(program, run);
 
   if (argc < 2)
-    return Fail(kInputAtFault, "a command is needed: info, map, simulate (--help explains)");
+    return Fail(kInputAtFault,
+                "a command is needed: evaluate, info, map, simulate (--help explains)");
   const std::string unknown = UnknownCommand(program, argv[1]);
   if (!unknown.empty()) return Fail(kInputAtFault, unknown);
   try {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `map` wrote, as far as evaluation needs it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/evaluation/stamped_trajectory.hpp"
+
+namespace masked_mapper {
+
+struct MappedFloor {
+  std::string label;
+  double elevation = 0.0;  ///< m
+};
+
+/// The floor whose elevation is nearest to a height; `floors` is not empty.
+std::size_t NearestFloor(const std::vector<MappedFloor>& floors, double z);
+
+/// Nodes by their place in nodes.tum.
+struct GraphEdge {
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+
+/// One line of closures.csv that is `validated`.
+struct ValidatedClosure {
+  std::size_t a = 0;  ///< the newer node
+  std::size_t b = 0;
+  Pose2 T_a_b;
+};
+
+/// The graph's nodes in order of time: node i and i + 1 are tied by odometry or a floor change.
+struct MappedGraph {
+  std::vector<StampedPose> nodes;
+  std::vector<GraphEdge> edges;  ///< all of graph.g2o
+};
+
+struct ResultFolder {
+  std::vector<StampedPose> trajectory;                    ///< in order of stamps
+  std::optional<MappedGraph> graph;                       ///< of nodes.tum and graph.g2o
+  std::optional<std::vector<ValidatedClosure>> closures;  ///< of closures.csv, when `graph` is
+  std::vector<MappedFloor> floors;                        ///< of summary.json
+};
+
+/// trajectory.tum must be there; of the others, what is there is read. Throws InputError, which
+/// names file and line.
+ResultFolder ReadResultFolder(const std::string& folder);
+
+}  // namespace masked_mapper

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/evaluation/path_length.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "masked_mapper/evaluation/shortest_path.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// A graph to walk in, and the lengths of the drive's own steps, from node i to i + 1.
+struct Walkable {
+  explicit Walkable(std::size_t nodes) : graph(nodes), steps(nodes - 1) {}
+  LengthGraph graph;
+  std::vector<double> steps;
+};
+
+bool IsStep(const GraphEdge& edge) {
+  return std::max(edge.from, edge.to) - std::min(edge.from, edge.to) == 1;
+}
+
+double LengthIn(const std::vector<StampedPose>& nodes, std::size_t a, std::size_t b) {
+  return Distance(nodes[a].T_world_robot, nodes[b].T_world_robot);
+}
+
+void SetStep(Walkable& walkable, std::size_t from, double length) {
+  walkable.steps[from] = length;
+  walkable.graph.AddEdge(from, from + 1, length);
+}
+
+Walkable AsMapped(const MappedGraph& graph) {
+  Walkable walkable(graph.nodes.size());
+  for (std::size_t i = 0; i + 1 < graph.nodes.size(); ++i) {
+    SetStep(walkable, i, LengthIn(graph.nodes, i, i + 1));
+  }
+  for (const GraphEdge& edge : graph.edges) {
+    if (!IsStep(edge)) {
+      walkable.graph.AddEdge(edge.from, edge.to, LengthIn(graph.nodes, edge.from, edge.to));
+    }
+  }
+  return walkable;
+}
+
+Walkable AsItIs(const MappedGraph& graph, const std::vector<std::optional<StampedPose>>& truth,
+                const ClosureTolerance& tolerance, const RevisitOptions& revisits) {
+  const auto true_length = [&truth](std::size_t a, std::size_t b) -> std::optional<double> {
+    if (!truth[a] || !truth[b]) return std::nullopt;
+    return Distance(truth[a]->T_world_robot, truth[b]->T_world_robot);
+  };
+  Walkable walkable(graph.nodes.size());
+  for (std::size_t i = 0; i + 1 < graph.nodes.size(); ++i) {
+    SetStep(walkable, i, true_length(i, i + 1).value_or(LengthIn(graph.nodes, i, i + 1)));
+  }
+  for (const GraphEdge& edge : graph.edges) {
+    const std::optional<double> length = true_length(edge.from, edge.to);
+    if (IsStep(edge) || !length) continue;
+    const double mapped = LengthIn(graph.nodes, edge.from, edge.to);
+    const double height = std::abs(truth[edge.from]->z - truth[edge.to]->z);
+    if (std::abs(*length - mapped) <= tolerance.translation_m && height < kSameFloorHeight) {
+      walkable.graph.AddEdge(edge.from, edge.to, *length);
+    }
+  }
+  for (const auto& [a, b] : TrueRevisits(graph.nodes, truth, revisits)) {
+    walkable.graph.AddEdge(a, b, *true_length(a, b));
+  }
+  return walkable;
+}
+
+/// Between nodes `before` and `before` + 1.
+struct Place {
+  std::size_t before = 0;
+  double fraction = 0.0;
+};
+
+Place PlaceOf(const std::vector<StampedPose>& nodes, double stamp) {
+  const auto behind =
+      std::upper_bound(nodes.begin(), nodes.end(), stamp,
+                       [](double value, const StampedPose& node) { return value < node.stamp; });
+  const auto after = std::clamp<std::size_t>(static_cast<std::size_t>(behind - nodes.begin()), 1,
+                                             nodes.size() - 1);
+  const double begin = nodes[after - 1].stamp;
+  const double duration = nodes[after].stamp - begin;
+  return {after - 1, duration > 0.0 ? std::clamp((stamp - begin) / duration, 0.0, 1.0) : 0.0};
+}
+
+double ShortestWay(const Walkable& walkable, const Place& from, const Place& to) {
+  const double from_step = walkable.steps[from.before];
+  const double to_step = walkable.steps[to.before];
+  const std::vector<double> lengths =
+      walkable.graph.LengthsFrom({{from.before, from.fraction * from_step},
+                                  {from.before + 1, (1.0 - from.fraction) * from_step}});
+  const double around = std::min(lengths[to.before] + to.fraction * to_step,
+                                 lengths[to.before + 1] + (1.0 - to.fraction) * to_step);
+  if (from.before != to.before) return around;
+  return std::min(around, std::abs(to.fraction - from.fraction) * from_step);
+}
+
+}  // namespace
+
+std::optional<PathLengthError> ComparePathLengths(
+    const MappedGraph& graph, const std::vector<std::optional<StampedPose>>& truth,
+    const ClosureTolerance& tolerance, const PathLengthOptions& options) {
+  const std::vector<StampedPose>& nodes = graph.nodes;
+  const bool known =
+      std::any_of(truth.begin(), truth.end(), [](const auto& pose) { return pose.has_value(); });
+  if (nodes.size() < 2 || !known || options.pairs == 0) return std::nullopt;
+  const Walkable mapped = AsMapped(graph);
+  const Walkable real = AsItIs(graph, truth, tolerance, options.revisits);
+  std::mt19937_64 generator(options.seed);
+  const auto draw = [&] {  // 53 bits, the same on every standard library
+    const double share = static_cast<double>(generator() >> 11) * 0x1p-53;
+    const double first = nodes.front().stamp;
+    return PlaceOf(nodes, first + share * (nodes.back().stamp - first));
+  };
+  PathLengthError error;
+  std::vector<double> magnitudes;
+  for (std::size_t i = 0; i < options.pairs; ++i) {
+    const Place from = draw();
+    const Place to = draw();
+    const double too_long = ShortestWay(mapped, from, to) - ShortestWay(real, from, to);
+    magnitudes.push_back(std::abs(too_long));
+    error.missing_m += std::max(too_long, 0.0) / static_cast<double>(options.pairs);
+    error.false_m += std::max(-too_long, 0.0) / static_cast<double>(options.pairs);
+  }
+  error.error_m = StatisticsOf(magnitudes);
+  return error;
+}
+
+}  // namespace masked_mapper
