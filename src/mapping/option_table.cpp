@@ -406,6 +406,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "m beyond which two places are two"},
       {"validator.max_contradiction", &o.validator.max_contradiction, 0.01, 1000,
        "distance at which the best validated way forbids a closure"},
+      {"validator.hopeless_loops", &o.validator.hopeless_loops, 1, 100000,
+       "disagreeing loops after which a hypothesis is left"},
       {"validator.max_loops", &o.validator.max_loops, 1, 100000,
        "loops looked at for one hypothesis"},
 
