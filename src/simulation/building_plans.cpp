@@ -284,7 +284,9 @@ Building CampusBuilding() {
   return building;
 }
 
-std::vector<std::string> BuildingNames() { return {"campus", "corridors", "office", "random", "tower"}; }
+std::vector<std::string> BuildingNames() {
+  return {"campus", "corridors", "office", "random", "tower"};
+}
 
 std::optional<Building> NamedBuilding(const std::string& name, std::uint64_t seed) {
   if (name == "campus") return CampusBuilding();

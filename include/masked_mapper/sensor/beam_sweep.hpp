@@ -14,9 +14,7 @@ namespace masked_mapper {
 class BeamSweep {
  public:
   /// Starts at beam 0, in the laser frame.
-  static BeamSweep InLaser(const LaserScan& scan) {
-    return {scan.first_angle, scan.angle_step};
-  }
+  static BeamSweep InLaser(const LaserScan& scan) { return {scan.first_angle, scan.angle_step}; }
   /// Starts at beam 0, in the robot frame.
   static BeamSweep InRobot(const LaserScan& scan) {
     return {scan.T_robot_laser.theta + scan.first_angle, scan.angle_step};

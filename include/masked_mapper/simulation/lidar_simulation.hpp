@@ -30,7 +30,7 @@ struct LidarNoise {
   double resolution = 0.01;    ///< m, ranges are multiples of it; 0: exact
   double glass_return = 0.75;  ///< chance that glass returns a beam that meets it squarely; at
                                ///< slant angles it falls with the square of the cosine
-  double lost = 0.0005;  ///< chance that a beam does not return at all
+  double lost = 0.0005;        ///< chance that a beam does not return at all
   PeopleOptions people;
 
   /// Nothing but walls: every beam ends at the first thing standing, glass included.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Buildings by the seed: rings, combs, ladders, wings, polygons and twins, of one to five floors, with
-// corridors of every width, rooms of every size, halls, elevators and stairs.
+// Buildings by the seed: rings, combs, ladders, wings, polygons and twins, of one to five floors,
+// with corridors of every width, rooms of every size, halls, elevators and stairs.
 #pragma once
 
 #include <cstdint>
