@@ -251,7 +251,9 @@ class TourBuilder {
     queue.emplace(0.0, id(here_));
     std::size_t target = kNone;
     while (!queue.empty()) {
-      const auto [cost, at] = queue.top();
+      // No structured binding: C++17 does not let the lambda below capture one.
+      const double cost = queue.top().first;
+      const std::size_t at = queue.top().second;
       queue.pop();
       if (cost > distance[at]) continue;
       if (is_target(all[at])) {
