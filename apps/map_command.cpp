@@ -29,6 +29,7 @@ struct MapArguments {
   std::string out;
   std::string mask = "openings";
   OptionFlags options;
+  std::string floors;
   std::string threads;
   bool resume = false;
   bool force = false;
@@ -46,6 +47,8 @@ ExistingFolder HowToTreat(const MapArguments& arguments) {
 int RunMap(const MapArguments& arguments) {
   Options options = ReadOptions(arguments.options);
   if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
+  if (!arguments.floors.empty()) options.floors.file = arguments.floors;
+  CheckOptions(options);
   if (options.threads == 0) {
     options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
@@ -103,6 +106,11 @@ void AddMapCommand(CLI::App& program, Run& run) {
       ->type_name("MASK");
   AddOptionFlags(*command, arguments->options);
   command
+      ->add_option("--floors", arguments->floors,
+                   "file of lines `t,label`: from t (s) on the robot is on that floor, `-`: in\n"
+                   "transit; stands for the log's own FLOOR lines")
+      ->type_name("FILE");
+  command
       ->add_option("--threads", arguments->threads,
                    "threads to use, 0: all; the map is the same with any number")
       ->type_name("N");
@@ -118,6 +126,7 @@ void AddMapCommand(CLI::App& program, Run& run) {
       "  masked_mapper map drive.log.gz -o out\n"
       "  masked_mapper map drive.log.gz -o out --force --mask 'any(openings,eccentricity)'\n"
       "  masked_mapper map drive.log.gz -o out --set matcher.min_score=0.5 --set log.max_range=30\n"
+      "  masked_mapper map drive.bag -o out --floors floors.csv\n"
       "\n"
       "OUT holds building.bt (OctoMap), building.pcd and .ply, floors/*.pgm + .yaml (map_server),\n"
       "trajectory.tum, graph.g2o, closures.csv and summary.json. Nothing is written before all of\n"

@@ -27,6 +27,7 @@ struct SimulateArguments {
   std::vector<std::string> visits;
   bool perfect = false;
   bool floor_labels = false;
+  bool without_pressure = false;
   bool force = false;
   bool quiet = false;
 };
@@ -66,6 +67,7 @@ int RunSimulate(const SimulateArguments& arguments) {
   options.length = arguments.length_m;
   options.visits = FloorsCalled(building, arguments.visits);
   options.floor_labels = arguments.floor_labels;
+  if (arguments.without_pressure) options.pressure.rate = 0.0;
   const SimulationNoise noise = arguments.perfect ? SimulationNoise::None() : SimulationNoise{};
 
   CatchInterrupts();
@@ -119,6 +121,7 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
   command->add_flag("--perfect", arguments->perfect, "no noise, no drift, no people");
   command->add_flag("--floor-labels", arguments->floor_labels,
                     "write FLOOR lines, as an elevator's interface would");
+  command->add_flag("--without-pressure", arguments->without_pressure, "no barometer");
   command->add_flag("--force", arguments->force, "replace a log that was not simulated");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->footer(

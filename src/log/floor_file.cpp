@@ -55,7 +55,9 @@ std::vector<FloorLabel> ReadFloorFile(const std::string& path) {
       throw InputError(path + ":" + std::to_string(number) + ": " + reason);
     };
     if (file.fail()) fail("the line is longer than " + std::to_string(kLongestLine));
-    const std::string line = Trimmed(buffer.data());
+    // What was read counts the line's end, where there is one; a zero byte does not end the line.
+    const auto letters = static_cast<std::size_t>(file.gcount() - (file.eof() ? 0 : 1));
+    const std::string line = Trimmed({buffer.data(), letters});
     if (line.empty() || line.front() == '#' || (labels.empty() && line == "t,label")) continue;
     const std::optional<FloorLabel> label = ParseLine(line);
     if (!label) fail("expected `t,label`: a stamp in seconds and a floor, or `-` in transit");

@@ -2,11 +2,14 @@
 #include "masked_mapper/mapping/log_survey.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <variant>
 #include <vector>
 
+#include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 
@@ -20,14 +23,33 @@ double Median(std::vector<float> values) {
   return *middle;
 }
 
+/// One label may stand for the whole log; of several, none in the log's time means another clock.
+void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
+                const LogStatistics& log) {
+  const bool is_in_time = std::any_of(labels.begin(), labels.end(), [&](const FloorLabel& label) {
+    return label.stamp >= log.first_stamp && label.stamp <= log.last_stamp;
+  });
+  if (is_in_time || labels.size() <= 1) return;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                ": no label falls into the time of the log, which is %.3f to %.3f s",
+                log.first_stamp, log.last_stamp);
+  throw InputError(path + text.data());
+}
+
 }  // namespace
 
 LogSurvey SurveyLog(const std::string& path, const Options& options) {
   LogOptions log_options = options.log;
   log_options.read_ranges = false;
+  FloorTracker floors(options.floors);
+  std::vector<FloorLabel> labels;
+  if (!options.floors.file.empty()) {
+    labels = ReadFloorFile(options.floors.file);
+    floors.UseLabels(labels);
+  }
   const std::unique_ptr<LogReader> log = OpenLog(path, log_options);
   LogSurvey survey;
-  FloorTracker floors(options.floors);
   std::optional<Pose2> T_odom_before;
   std::optional<double> stamp_before;
   std::vector<float> travels;
@@ -54,6 +76,7 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
     T_odom_before = scan->T_odom_robot;
   }
   if (survey.scans == 0) throw InputError(path + ": not one valid laser scan in it");
+  if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
   if (floors.NeedsRanges()) {
     const std::unique_ptr<LogReader> again = OpenLog(path, options.log);
     while (const std::optional<Observation> observation = again->Next()) {

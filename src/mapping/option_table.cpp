@@ -184,6 +184,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"floors.source",
        ChoiceOf(o.floors.source, {"auto", "labels", "pressure", "acceleration", "lidar", "none"}),
        0, 0, "what tells floors apart; auto: the best that the log holds"},
+      {"floors.file", &o.floors.file, 0, 0,
+       "lines `t,label`, stand for the log's FLOOR lines (--floors)"},
       {"floors.storeys.min_gap", &o.floors.storeys.min_gap, 0.5, 100,
        "m between two floors at least"},
       {"floors.storeys.typical_height", &o.floors.storeys.typical_height, 0.5, 100,
@@ -549,6 +551,11 @@ void CheckOptions(const Options& options) {
   if (options.log.max_range > 0.0 && options.log.min_range >= options.log.max_range) {
     throw InputError("log.min_range (" + NumberText(options.log.min_range) +
                      ") must be below log.max_range (" + NumberText(options.log.max_range) + ")");
+  }
+  const FloorSource source = options.floors.source;
+  if (!options.floors.file.empty() && source != FloorSource::kAuto &&
+      source != FloorSource::kLabels) {
+    throw InputError("a file of floors needs floors.source auto or labels");
   }
 }
 

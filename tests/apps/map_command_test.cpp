@@ -98,6 +98,42 @@ TEST(MapCommand, LogsWithoutOneValidScanAreTheUsersFault) {
   ExpectUsersFault(folder, {"map", folder / "broken.log", "-o", folder / "out"}, "broken.log");
 }
 
+TEST(MapCommand, FloorsFromAFile) {
+  const ScratchFolder folder;
+  const std::vector<Pose2> drive = RingDrive(1);
+  const double last = 100.0 + 0.2 * static_cast<double>(drive.size() - 1);
+  std::vector<std::string> lines = Ring();
+  lines.push_back("FLOOR log_says_so 100.0 robot 0.0");
+  WriteText(folder / "ring.log", Joined(lines));
+  const std::string log = folder / "ring.log";
+  const std::string out = folder / "out";
+  WriteText(folder / "floors.csv", "t,label\n100,EG\n" + std::to_string(last - 20.0) + ",OG\n");
+  const Ran ran = RunProgram({"map", log, "-o", out, "--floors", folder / "floors.csv"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(fs::exists(out + "/floors/EG.pgm"));
+  EXPECT_TRUE(fs::exists(out + "/floors/OG.pgm"));
+  EXPECT_FALSE(fs::exists(out + "/floors/log_says_so.pgm"));
+  const auto summary = nlohmann::json::parse(ReadText(out + "/summary.json"));
+  EXPECT_EQ(summary.at("options").at("floors.file"), folder / "floors.csv");
+
+  const std::string other = folder / "other";
+  const auto expect = [&](const std::string& text, const std::string& said) {
+    WriteText(folder / "wrong.csv", text);
+    ExpectUsersFault(folder, {"map", log, "-o", other, "--floors", folder / "wrong.csv"}, said);
+  };
+  expect("", "no line says a floor");
+  expect("t,label\n100,EG\nnoon,OG\n", "wrong.csv:3: expected `t,label`");
+  expect("100,EG\n110,a/b\n", "wrong.csv:2: a label");
+  expect("110,EG\n100,OG\n", "wrong.csv:2: the stamp steps back");
+  expect("1,EG\n2,OG\n", "wrong.csv: no label falls into the time of the log");
+  expect(std::string("\0\x01\x02", 3), "wrong.csv:1:");
+  ExpectUsersFault(folder, {"map", log, "-o", other, "--floors", folder / "none.csv"}, "none.csv");
+  ExpectUsersFault(folder,
+                   {"map", log, "-o", other, "--floors", folder / "floors.csv", "--set",
+                    "floors.source=pressure"},
+                   "floors.source");
+}
+
 TEST(MapCommand, AnExistingOutputIsNotReplacedUnasked) {
   const ScratchFolder folder;
   WriteText(folder / "ring.log", Joined(Ring()));

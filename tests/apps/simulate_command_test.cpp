@@ -31,6 +31,18 @@ TEST(SimulateCommand, WritesLogAndTruth) {
   EXPECT_TRUE(ReadText(log) == first);
 }
 
+TEST(SimulateCommand, TheBarometerMayBeLeftOut) {
+  const ScratchFolder folder;
+  const std::string log = folder / "office.log";
+  ASSERT_EQ(RunProgram({"simulate", "--building", "office", "-o", log, "--quiet"}).code, 0);
+  EXPECT_TRUE(Contains(ReadText(log), "\nPRESSURE "));
+  ASSERT_EQ(
+      RunProgram({"simulate", "--building", "office", "-o", log, "--quiet", "--without-pressure"})
+          .code,
+      0);
+  EXPECT_FALSE(Contains(ReadText(log), "\nPRESSURE "));
+}
+
 TEST(SimulateCommand, MistakesAreSaid) {
   const ScratchFolder folder;
   const std::string log = folder / "new.log";

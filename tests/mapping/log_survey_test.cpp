@@ -57,5 +57,33 @@ TEST(SurveyLog, WithoutAScanThereIsNothingToMap) {
   EXPECT_THROW(SurveyLog(path, {}), InputError);
 }
 
+TEST(SurveyLog, FloorsOfAFileStandForThoseOfTheLog) {
+  const std::string path = TemporaryLog("floors.log");
+  LogWriter writer(path);
+  for (int i = 0; i < 50; ++i) writer.Write(ScanAt(10.0 + 0.2 * i, 0.1 * i));
+  writer.Close();
+  const std::string file = TemporaryLog("floors.csv");
+  Options options;
+  options.floors.file = file;
+
+  std::ofstream(file) << "t,label\n9,EG\n14,-\n15,OG\n";
+  const LogSurvey survey = SurveyLog(path, options);
+  EXPECT_EQ(survey.floor_source, FloorSource::kLabels);
+  ASSERT_EQ(survey.floors.levels.size(), 2U);
+  EXPECT_EQ(survey.floors.levels[0].label, "EG");
+  EXPECT_EQ(survey.floors.At(13.9).level, 0U);
+  EXPECT_TRUE(survey.floors.At(14.5).in_transit);
+  EXPECT_EQ(survey.floors.At(15.1).level, 1U);
+
+  std::ofstream(file) << "0,EG\n";  // one label may stand for the whole log
+  EXPECT_EQ(SurveyLog(path, options).floors.levels.front().label, "EG");
+  for (const char* wrong : {"0,EG\n5,OG\n", "1000,EG\n1005,OG\n", "9,../x\n", "14,-\n", ""}) {
+    std::ofstream(file) << wrong;
+    EXPECT_THROW(SurveyLog(path, options), InputError) << wrong;
+  }
+  options.floors.file = TemporaryLog("floors.missing");
+  EXPECT_THROW(SurveyLog(path, options), InputError);
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -195,6 +195,16 @@ TEST(OptionTable, ContradictionsAreNamed) {
   }
 }
 
+TEST(OptionTable, AFileOfFloorsIsForLabelsOnly) {
+  Options options;
+  options.floors.file = "floors.csv";
+  EXPECT_NO_THROW(CheckOptions(options));
+  options.floors.source = FloorSource::kLabels;
+  EXPECT_NO_THROW(CheckOptions(options));
+  options.floors.source = FloorSource::kPressure;
+  EXPECT_THROW(CheckOptions(options), InputError);
+}
+
 TEST(OptionTable, ValuesHaveTheTypesOfTheirFields) {
   const auto values = OptionValues(Options{});
   const std::map<std::string, OptionValue> by_key(values.begin(), values.end());

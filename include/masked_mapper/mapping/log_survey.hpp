@@ -25,7 +25,8 @@ struct LogSurvey {
   std::vector<std::string> warnings;
 };
 
-/// Throws InputError when the log cannot be read or holds no scan.
+/// Throws InputError when the log cannot be read or holds no scan, or its file of floors is not one
+/// of this log.
 LogSurvey SurveyLog(const std::string& path, const Options& options);
 
 /// What `requested` comes to for this log. Throws InputError when wheels are asked for and the log

@@ -29,6 +29,7 @@ enum class FloorSource {
 
 struct FloorOptions {
   FloorSource source = FloorSource::kAuto;
+  std::string file;  ///< lines `t,label` that stand for the log's labels; empty: none
   StoreyOptions storeys;
   FloorLabelOptions labels;
   FloorPressureOptions pressure;
