@@ -14,9 +14,11 @@
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/configuration.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "option_flags.hpp"
 #include "progress_bar.hpp"
@@ -64,9 +66,16 @@ int RunMap(const MapArguments& arguments) {
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
   const std::string& log = arguments.logs.front();
-  const MappingResult result = MapLog(log, arguments.mask, options, progress);
+  MappingResult result = MapLog(log, arguments.mask, options, progress);
   progress.Stage("writing");
   OutputFolder folder(arguments.out, existing);
+  double map_file_seconds = 0.0;
+  {
+    const StageTimer timer(map_file_seconds);
+    WriteMapFile({log, arguments.mask, options}, result, folder.path() / "building.mmap");
+  }
+  result.seconds.export_ += map_file_seconds;
+  result.seconds.total += map_file_seconds;
   ExportOptions export_options{options.grid, options.octree};
   export_options.grid.threads = options.threads;
   const Summary summary =
@@ -128,9 +137,10 @@ void AddMapCommand(CLI::App& program, Run& run) {
       "  masked_mapper map drive.log.gz -o out --set matcher.min_score=0.5 --set log.max_range=30\n"
       "  masked_mapper map drive.bag -o out --floors floors.csv\n"
       "\n"
-      "OUT holds building.bt (OctoMap), building.pcd and .ply, floors/*.pgm + .yaml (map_server),\n"
-      "trajectory.tum, graph.g2o, closures.csv and summary.json. Nothing is written before all of\n"
-      "it is, and an OUT that exists is never replaced without --force.");
+      "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
+      "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv and\n"
+      "summary.json. Nothing is written before all of it is, and an OUT that exists is never\n"
+      "replaced without --force.");
   command->callback([arguments, &run] { run = [arguments] { return RunMap(*arguments); }; });
 }
 

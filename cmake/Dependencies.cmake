@@ -10,6 +10,7 @@ find_package(octomap 1.9 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
+find_package(SQLite3 3.37 REQUIRED)
 
 # `find_package(PCL)` pulls VTK in through `io` and costs seconds at configure time; of PCL the point
 # types and the file formats are used, so the libraries are found by name.

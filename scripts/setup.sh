@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build
   libeigen3-dev libpcl-dev liboctomap-dev libceres-dev
-  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libbz2-dev liblz4-dev
+  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libbz2-dev liblz4-dev libsqlite3-dev
   libgtest-dev
 )
 checks=(

@@ -194,9 +194,10 @@ TEST(MapCommand, MapWritesTheContract) {
   const std::string out = folder / "out";
   const Ran ran = RunProgram({"map", folder / "ring.log.gz", "-o", out});
   ASSERT_EQ(ran.code, 0) << ran.err;
-  for (const char* name : {"building.bt", "building.pcd", "building.ply", "floors/0.pcd",
-                           "floors/0.pgm", "floors/0.yaml", "floors/0.g2o", "trajectory.tum",
-                           "nodes.tum", "graph.g2o", "closures.csv", "summary.json"}) {
+  for (const char* name :
+       {"building.mmap", "building.bt", "building.pcd", "building.ply", "floors/0.pcd",
+        "floors/0.pgm", "floors/0.yaml", "floors/0.g2o", "trajectory.tum", "nodes.tum", "graph.g2o",
+        "closures.csv", "summary.json"}) {
     EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
   }
   EXPECT_EQ(ReadText(out + "/closures.csv")

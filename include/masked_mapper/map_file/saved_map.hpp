@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A map as it is kept: what was asked for, and what came of it.
+#pragma once
+
+#include <string>
+
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/mapping/options.hpp"
+
+namespace masked_mapper {
+
+/// What a map was made from.
+struct MapOrigin {
+  std::string log;   ///< path as given
+  std::string mask;  ///< expression as given
+  Options options;   ///< as given; the number of threads is not kept
+};
+
+struct SavedMap {
+  MapOrigin origin;
+  MappingResult result;  ///< without its seconds, in which two runs differ
+};
+
+}  // namespace masked_mapper

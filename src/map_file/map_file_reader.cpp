@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Written as if the file came from an enemy: what a row says is believed only when it holds
+// together with the rest, and nothing is allocated that the file does not pay for in bytes.
+#include "masked_mapper/map_file/map_file_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "database.hpp"
+#include "map_rows.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "packed_bytes.hpp"
+#include "schema.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Packed bytes may grow so much; real ones stay below a tenth of it.
+constexpr std::uint64_t kLargestGrowth = 256;
+
+[[noreturn]] void Malformed(const std::string& table, const std::string& what) {
+  throw DatabaseError("table " + table + ": " + what);
+}
+
+class Reader {
+ public:
+  Reader(const Database& database, std::uint64_t file_size)
+      : database_(database), bytes_left_(file_size * kLargestGrowth + (1U << 20U)) {}
+
+  SavedMap Read() {
+    ReadOptions();
+    ReadRun();
+    ReadLog();
+    ReadFloors();
+    ReadNodes();
+    ReadEdges();
+    ReadAttempts();
+    ReadTrajectory();
+    ReadScans();
+    return std::move(map_);
+  }
+
+ private:
+  // Ids count from 0 without a gap, since rows refer to each other by place.
+  static void TakeId(Statement& row, std::size_t expected, const std::string& table) {
+    if (row.Integer() != static_cast<std::int64_t>(expected)) Malformed(table, "a row is missing");
+  }
+
+  static double Finite(Statement& row, const std::string& table) {
+    const double value = row.Real();
+    if (!std::isfinite(value)) Malformed(table, "a number is not finite");
+    return value;
+  }
+
+  static Pose2 TakePose(Statement& row, const std::string& table) {
+    Pose2 pose;
+    pose.x = Finite(row, table);
+    pose.y = Finite(row, table);
+    pose.theta = Finite(row, table);
+    return pose;
+  }
+
+  static Eigen::Matrix3d TakeCovariance(Statement& row, const std::string& table) {
+    std::string_view bytes = row.Blob();
+    if (bytes.size() != kCovarianceBytes) Malformed(table, "a covariance of the wrong size");
+    Eigen::Matrix3d covariance;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        covariance(i, j) = TakeNumber<double>(bytes);
+        if (!std::isfinite(covariance(i, j))) Malformed(table, "a covariance is not finite");
+      }
+    }
+    return covariance;
+  }
+
+  static std::int64_t TakeBelow(Statement& row, std::size_t limit, const std::string& table,
+                                const std::string& what) {
+    const std::int64_t value = row.Integer();
+    if (value < 0 || static_cast<std::uint64_t>(value) >= limit) {
+      Malformed(table, what + " " + std::to_string(value) + " does not exist");
+    }
+    return value;
+  }
+
+  static bool TakeFlag(Statement& row, const std::string& table) {
+    return TakeBelow(row, 2, table, "the flag") == 1;
+  }
+
+  template <typename Enumeration, std::size_t kSize>
+  static Enumeration TakeName(Statement& row, const std::array<const char*, kSize>& names,
+                              const std::string& table) {
+    return NameValue<Enumeration>(row.Text(), names, table);
+  }
+
+  template <typename Enumeration, std::size_t kSize>
+  static Enumeration NameValue(std::string_view name, const std::array<const char*, kSize>& names,
+                               const std::string& table) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (name == names[i]) return static_cast<Enumeration>(i);
+    }
+    Malformed(table, "an unknown name");
+  }
+
+  // The bytes of `count` records of `width` bytes, of the three columns count, bytes and checksum.
+  std::string TakePacked(Statement& row, std::int64_t count, std::size_t width,
+                         const std::string& table) {
+    const std::string_view packed = row.Blob();
+    if (row.Integer() != std::int64_t{Checksum(packed)}) {
+      Malformed(table, "bytes that do not fit their checksum");
+    }
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_left_ / width) {
+      Malformed(table, "more is promised than the file can hold");
+    }
+    const std::size_t size = static_cast<std::size_t>(count) * width;
+    bytes_left_ -= size;
+    return Unpack(packed, width, size);
+  }
+
+  void ReadOptions() {
+    Statement rows(database_, "SELECT key, value FROM options ORDER BY id");
+    try {
+      while (rows.Next()) {
+        const std::string key(rows.Text());
+        SetOption("table options", key, std::string(rows.Text()), map_.origin.options);
+      }
+      CheckOptions(map_.origin.options);
+    } catch (const InputError& error) {
+      throw DatabaseError(error.what());
+    }
+  }
+
+  void ReadRun() {
+    std::map<std::string, std::string> values;
+    Statement rows(database_, "SELECT key, value FROM run ORDER BY id");
+    while (rows.Next()) {
+      std::string key(rows.Text());
+      values.emplace(std::move(key), rows.Text());
+    }
+    for (const char* key : {"log", "mask", "motion_source"}) {
+      if (values.count(key) == 0) Malformed("run", std::string(key) + " is missing");
+    }
+    map_.origin.log = values["log"];
+    map_.origin.mask = values["mask"];
+    map_.result.motion_source =
+        NameValue<MotionSource>(values["motion_source"], kMotionSources, "run");
+  }
+
+  void ReadLog() {
+    LogStatistics& log = map_.result.log;
+    Statement rows(database_, "SELECT key, value FROM log_statistics ORDER BY id");
+    while (rows.Next()) {
+      const std::string key(rows.Text());
+      for (const LogCount& count : kLogCounts) {
+        if (key == count.key) log.*count.field = static_cast<std::uint64_t>(rows.Integer());
+      }
+      for (const LogMeasure& measure : kLogMeasures) {
+        if (key == measure.key) log.*measure.field = Finite(rows, "log_statistics");
+      }
+      if (key == "truncated") log.truncated = TakeFlag(rows, "log_statistics");
+      if (key == "first_bad_line") log.first_bad_line = rows.Text();
+    }
+    Statement other(database_, "SELECT name, count FROM other_messages ORDER BY id");
+    while (other.Next()) {
+      std::string name(other.Text());
+      log.other_messages.emplace(std::move(name), static_cast<std::uint64_t>(other.Integer()));
+    }
+    Statement warnings(database_, "SELECT text FROM warnings ORDER BY id");
+    while (warnings.Next()) map_.result.warnings.emplace_back(warnings.Text());
+  }
+
+  void ReadFloors() {
+    PoseGraph& graph = map_.result.graph;
+    Statement rows(database_, "SELECT * FROM floors ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, graph.floors().size(), "floors");
+      Floor floor;
+      floor.label = rows.Text();
+      floor.elevation = Finite(rows, "floors");
+      floor.elevation_sigma = Finite(rows, "floors");
+      floor.elevation_measured = TakeFlag(rows, "floors");
+      graph.AddFloor(std::move(floor));
+    }
+  }
+
+  void ReadNodes() {
+    PoseGraph& graph = map_.result.graph;
+    Statement rows(database_, "SELECT * FROM nodes ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, graph.nodes().size(), "nodes");
+      Node node;
+      node.stamp = Finite(rows, "nodes");
+      node.floor =
+          static_cast<FloorId>(TakeBelow(rows, graph.floors().size(), "nodes", "the floor"));
+      node.T_odom_robot = TakePose(rows, "nodes");
+      node.T_world_robot = TakePose(rows, "nodes");
+      if (rows.NextType() != ValueType::kNull) node.points_in_robot = TakePoints(rows);
+      graph.AddNode(std::move(node));
+    }
+  }
+
+  ScanPoints::ConstPtr TakePoints(Statement& row) {
+    const std::int64_t count = row.Integer();
+    const std::string bytes = TakePacked(row, count, kPointBytes, "nodes");
+    ScanPoints::Ptr points(new ScanPoints);
+    std::string_view rest = bytes;
+    while (!rest.empty()) {
+      pcl::PointXY point;
+      point.x = TakeNumber<float>(rest);
+      point.y = TakeNumber<float>(rest);
+      if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
+        Malformed("nodes", "a point is not finite");
+      }
+      points->push_back(point);
+    }
+    return points;
+  }
+
+  void ReadEdges() {
+    PoseGraph& graph = map_.result.graph;
+    const std::size_t nodes = graph.nodes().size();
+    Statement rows(database_, "SELECT * FROM edges ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, graph.edges().size(), "edges");
+      Edge edge;
+      edge.from = static_cast<NodeId>(TakeBelow(rows, nodes, "edges", "the node"));
+      edge.to = static_cast<NodeId>(TakeBelow(rows, nodes, "edges", "the node"));
+      edge.kind = TakeName<EdgeKind>(rows, kEdgeKinds, "edges");
+      edge.T_from_to.mean = TakePose(rows, "edges");
+      edge.T_from_to.covariance = TakeCovariance(rows, "edges");
+      const bool same_floor = graph.nodes()[static_cast<std::size_t>(edge.from)].floor ==
+                              graph.nodes()[static_cast<std::size_t>(edge.to)].floor;
+      if (edge.from == edge.to || (edge.kind == EdgeKind::kClosure && !same_floor)) {
+        Malformed("edges", "an edge between nodes that none can join");
+      }
+      graph.AddEdge(edge);
+    }
+  }
+
+  void ReadAttempts() {
+    const std::size_t nodes = map_.result.graph.nodes().size();
+    Statement rows(database_, "SELECT * FROM attempts ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, map_.result.attempts.size(), "attempts");
+      ClosureAttempt attempt;
+      attempt.a = static_cast<NodeId>(TakeBelow(rows, nodes, "attempts", "the node"));
+      attempt.b = static_cast<NodeId>(TakeBelow(rows, nodes, "attempts", "the node"));
+      attempt.T_a_b.mean = TakePose(rows, "attempts");
+      attempt.T_a_b.covariance = TakeCovariance(rows, "attempts");
+      attempt.score = Finite(rows, "attempts");
+      attempt.mahalanobis = Finite(rows, "attempts");
+      attempt.agreement = Finite(rows, "attempts");
+      attempt.votes = static_cast<int>(
+          TakeBelow(rows, std::size_t{std::numeric_limits<int>::max()}, "attempts", "the count"));
+      attempt.state = TakeName<ClosureState>(rows, kClosureStates, "attempts");
+      attempt.reason = rows.Text();
+      map_.result.attempts.push_back(std::move(attempt));
+    }
+  }
+
+  void ReadTrajectory() {
+    std::size_t next = 0;
+    Statement rows(database_, "SELECT * FROM trajectory ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, next++, "trajectory");
+      const std::int64_t count = rows.Integer();
+      const std::string bytes = TakePacked(rows, count, kPoseBytes, "trajectory");
+      std::string_view rest = bytes;
+      while (!rest.empty()) map_.result.trajectory.push_back(TakeTrajectoryPose(rest));
+    }
+  }
+
+  TrajectoryPose TakeTrajectoryPose(std::string_view& bytes) const {
+    TrajectoryPose pose;
+    pose.stamp = TakeNumber<double>(bytes);
+    pose.floor = TakeNumber<FloorId>(bytes);
+    const auto in_transit = TakeNumber<std::uint8_t>(bytes);
+    pose.in_transit = in_transit == 1;
+    pose.node_before = TakeNumber<NodeId>(bytes);
+    bool is_finite = std::isfinite(pose.stamp);
+    for (Pose2* T : {&pose.T_odom_robot, &pose.T_world_robot}) {
+      for (double Pose2::*part : {&Pose2::x, &Pose2::y, &Pose2::theta}) {
+        T->*part = TakeNumber<double>(bytes);
+        is_finite = is_finite && std::isfinite(T->*part);
+      }
+    }
+    const PoseGraph& graph = map_.result.graph;
+    const auto exists = [](std::int32_t id, std::size_t count) {
+      return id >= 0 && static_cast<std::size_t>(id) < count;
+    };
+    if (!is_finite || in_transit > 1 || !exists(pose.floor, graph.floors().size()) ||
+        !exists(pose.node_before, graph.nodes().size())) {
+      Malformed("trajectory", "a pose that cannot be");
+    }
+    return pose;
+  }
+
+  void ReadScans() {
+    const std::size_t poses = map_.result.trajectory.size();
+    Statement rows(database_, "SELECT * FROM scans ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, map_.result.kept_scans.size(), "scans");
+      KeptScan kept;
+      kept.trajectory_index = static_cast<std::size_t>(TakeBelow(rows, poses, "scans", "the pose"));
+      kept.scan = TakeScan(rows);
+      map_.result.kept_scans.push_back(std::move(kept));
+    }
+  }
+
+  LaserScan TakeScan(Statement& row) {
+    LaserScan scan;
+    scan.stamp = Finite(row, "scans");
+    scan.T_robot_laser = TakePose(row, "scans");
+    scan.first_angle = Finite(row, "scans");
+    scan.angle_step = Finite(row, "scans");
+    scan.max_range = static_cast<float>(Finite(row, "scans"));
+    if (row.NextType() == ValueType::kNull) {
+      for (int i = 0; i < 3; ++i) row.Skip();
+    } else {
+      scan.T_odom_robot = TakePose(row, "scans");
+    }
+    const std::int64_t count = row.Integer();
+    const std::string bytes = TakePacked(row, count, sizeof(float), "scans");
+    std::string_view rest = bytes;
+    scan.ranges.reserve(static_cast<std::size_t>(count));
+    while (!rest.empty()) {
+      const auto range = TakeNumber<float>(rest);
+      if (range <= 0.0F) Malformed("scans", "a range that is not above zero");
+      scan.ranges.push_back(range);
+    }
+    return scan;
+  }
+
+  const Database& database_;
+  std::uint64_t bytes_left_;  // that may still be unpacked
+  SavedMap map_;
+};
+
+// What can be said before SQLite looks at the file, in clearer words than SQLite has.
+std::uint64_t CheckIsDatabase(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(path.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(path.string() + ": not a file");
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path.string() + ": cannot be read");
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  std::string magic(kMagic.size(), '\0');
+  in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (!in || magic != kMagic) throw InputError(path.string() + ": not a saved map");
+  return std::filesystem::file_size(path, error);
+}
+
+}  // namespace
+
+SavedMap ReadMapFile(const std::filesystem::path& path) {
+  const std::uint64_t size = CheckIsDatabase(path);
+  try {
+    Database database(path, OpenMode::kRead);
+    if (database.Number("PRAGMA application_id") != kMapApplicationId) {
+      throw InputError(path.string() + ": not a saved map, but another database");
+    }
+    const std::int64_t version = database.Number("PRAGMA user_version");
+    if (version > kMapVersion) {
+      throw InputError(path.string() + ": written by a newer program (map version " +
+                       std::to_string(version) + ", this one reads up to " +
+                       std::to_string(kMapVersion) + ")");
+    }
+    if (version < 1) throw DatabaseError("it has no version");
+    CheckSeal(database, version);
+    if (version == kMapVersion) return Reader(database, size).Read();
+    Database upgraded = Database::CopyInMemory(database);
+    Upgrade(upgraded, version);
+    return Reader(upgraded, size).Read();
+  } catch (const DatabaseError& error) {
+    throw InputError(path.string() + ": damaged, cannot be used: " + error.what());
+  }
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/map_file/map_file_writer.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "database.hpp"
+#include "map_rows.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "packed_bytes.hpp"
+#include "schema.hpp"
+
+namespace masked_mapper {
+namespace {
+
+std::int64_t Id(std::size_t index) { return static_cast<std::int64_t>(index); }
+
+template <std::size_t kSize, typename Enumeration>
+const char* NameOf(const std::array<const char*, kSize>& names, Enumeration value) {
+  return names.at(static_cast<std::size_t>(value));
+}
+
+void BindPose(const Pose2& pose, Statement& statement) {
+  statement.Bind(pose.x).Bind(pose.y).Bind(pose.theta);
+}
+
+// As bytes: a covariance that was composed is not symmetric to the last bit.
+void BindCovariance(const Eigen::Matrix3d& covariance, Statement& statement) {
+  std::string bytes;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) AppendBytes(covariance(row, column), bytes);
+  }
+  statement.BindBlob(bytes);
+}
+
+void WriteOrigin(const MapOrigin& origin, const MappingResult& result, const Database& database) {
+  Statement run(database, "INSERT INTO run(key, value) VALUES (?,?)");
+  run.BindText("log").BindText(origin.log).Put();
+  run.BindText("mask").BindText(origin.mask).Put();
+  run.BindText("motion_source").BindText(NameOf(kMotionSources, result.motion_source)).Put();
+  Statement insert(database, "INSERT INTO options(key, value) VALUES (?,?)");
+  Options options = origin.options;
+  for (const OptionEntry& entry : OptionTable(options)) {
+    if (entry.key == "threads") continue;  // it changes nothing
+    insert.BindText(entry.key).BindText(ValueText(entry)).Put();
+  }
+}
+
+void WriteLog(const MappingResult& result, const Database& database) {
+  const LogStatistics& log = result.log;
+  Statement insert(database, "INSERT INTO log_statistics(key, value) VALUES (?,?)");
+  for (const LogCount& count : kLogCounts) {
+    insert.BindText(count.key).Bind(static_cast<std::int64_t>(log.*count.field)).Put();
+  }
+  for (const LogMeasure& measure : kLogMeasures) {
+    insert.BindText(measure.key).Bind(log.*measure.field).Put();
+  }
+  insert.BindText("truncated").Bind(std::int64_t{log.truncated}).Put();
+  insert.BindText("first_bad_line").BindText(log.first_bad_line).Put();
+  Statement other(database, "INSERT INTO other_messages(name, count) VALUES (?,?)");
+  for (const auto& [name, count] : log.other_messages) {
+    other.BindText(name).Bind(static_cast<std::int64_t>(count)).Put();
+  }
+  Statement warning(database, "INSERT INTO warnings(text) VALUES (?)");
+  for (const std::string& text : result.warnings) warning.BindText(text).Put();
+}
+
+void WriteNodes(const PoseGraph& graph, const Database& database) {
+  Statement floor(database, "INSERT INTO floors VALUES (?,?,?,?,?)");
+  for (std::size_t i = 0; i < graph.floors().size(); ++i) {
+    const Floor& f = graph.floors()[i];
+    floor.Bind(Id(i)).BindText(f.label).Bind(f.elevation).Bind(f.elevation_sigma);
+    floor.Bind(std::int64_t{f.elevation_measured}).Put();
+  }
+  Statement insert(database, "INSERT INTO nodes VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
+    const Node& node = graph.nodes()[i];
+    insert.Bind(Id(i)).Bind(node.stamp).Bind(std::int64_t{node.floor});
+    BindPose(node.T_odom_robot, insert);
+    BindPose(node.T_world_robot, insert);
+    if (!node.HasScan()) {
+      insert.BindNull().BindNull().BindNull().Put();
+      continue;
+    }
+    std::string bytes;
+    for (const pcl::PointXY& point : *node.points_in_robot) {
+      AppendBytes(point.x, bytes);
+      AppendBytes(point.y, bytes);
+    }
+    const std::string packed = Pack(bytes, kPointBytes);
+    insert.Bind(Id(node.points_in_robot->size())).BindBlob(packed);
+    insert.Bind(std::int64_t{Checksum(packed)}).Put();
+  }
+}
+
+void WriteEdges(const PoseGraph& graph, const Database& database) {
+  Statement insert(database, "INSERT INTO edges VALUES (?,?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+    const Edge& edge = graph.edges()[i];
+    insert.Bind(Id(i)).Bind(std::int64_t{edge.from}).Bind(std::int64_t{edge.to});
+    insert.BindText(NameOf(kEdgeKinds, edge.kind));
+    BindPose(edge.T_from_to.mean, insert);
+    BindCovariance(edge.T_from_to.covariance, insert);
+    insert.Put();
+  }
+}
+
+void WriteAttempts(const std::vector<ClosureAttempt>& attempts, const Database& database) {
+  Statement insert(database, "INSERT INTO attempts VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    const ClosureAttempt& attempt = attempts[i];
+    insert.Bind(Id(i)).Bind(std::int64_t{attempt.a}).Bind(std::int64_t{attempt.b});
+    BindPose(attempt.T_a_b.mean, insert);
+    BindCovariance(attempt.T_a_b.covariance, insert);
+    insert.Bind(attempt.score).Bind(attempt.mahalanobis).Bind(attempt.agreement);
+    insert.Bind(std::int64_t{attempt.votes}).BindText(NameOf(kClosureStates, attempt.state));
+    insert.BindText(attempt.reason).Put();
+  }
+}
+
+void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory, const Database& database) {
+  Statement insert(database, "INSERT INTO trajectory VALUES (?,?,?,?)");
+  for (std::size_t begin = 0; begin < trajectory.size(); begin += kPosesPerRow) {
+    const std::size_t end = std::min(begin + kPosesPerRow, trajectory.size());
+    std::string bytes;
+    for (std::size_t i = begin; i < end; ++i) {
+      const TrajectoryPose& pose = trajectory[i];
+      AppendBytes(pose.stamp, bytes);
+      AppendBytes(pose.floor, bytes);
+      AppendBytes(static_cast<std::uint8_t>(pose.in_transit), bytes);
+      AppendBytes(pose.node_before, bytes);
+      for (const Pose2& T : {pose.T_odom_robot, pose.T_world_robot}) {
+        AppendBytes(T.x, bytes);
+        AppendBytes(T.y, bytes);
+        AppendBytes(T.theta, bytes);
+      }
+    }
+    const std::string packed = Pack(bytes, kPoseBytes);
+    insert.Bind(Id(begin / kPosesPerRow)).Bind(Id(end - begin)).BindBlob(packed);
+    insert.Bind(std::int64_t{Checksum(packed)}).Put();
+  }
+}
+
+void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& database) {
+  Statement insert(database, "INSERT INTO scans VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  std::string bytes;
+  for (std::size_t i = 0; i < kept_scans.size(); ++i) {
+    const LaserScan& scan = kept_scans[i].scan;
+    insert.Bind(Id(i)).Bind(Id(kept_scans[i].trajectory_index)).Bind(scan.stamp);
+    BindPose(scan.T_robot_laser, insert);
+    insert.Bind(scan.first_angle).Bind(scan.angle_step).Bind(double{scan.max_range});
+    if (scan.T_odom_robot) {
+      BindPose(*scan.T_odom_robot, insert);
+    } else {
+      insert.BindNull().BindNull().BindNull();
+    }
+    bytes.clear();
+    for (const float range : scan.ranges) AppendBytes(range, bytes);
+    const std::string packed = Pack(bytes, sizeof(float));
+    insert.Bind(Id(scan.size())).BindBlob(packed).Bind(std::int64_t{Checksum(packed)}).Put();
+  }
+}
+
+}  // namespace
+
+void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
+                  const std::filesystem::path& path) {
+  try {
+    Database database(path, OpenMode::kWrite);
+    // Nobody sees the file before it is whole: it is written aside, as every export is.
+    database.Run("PRAGMA page_size = 4096");
+    database.Run("PRAGMA journal_mode = OFF");
+    database.Run("PRAGMA synchronous = OFF");
+    database.Run("PRAGMA secure_delete = ON");  // what is free holds nothing
+    Transaction transaction(database);
+    MakeTables(database);
+    WriteOrigin(origin, result, database);
+    WriteLog(result, database);
+    WriteNodes(result.graph, database);
+    WriteEdges(result.graph, database);
+    WriteAttempts(result.attempts, database);
+    WriteTrajectory(result.trajectory, database);
+    WriteScans(result.kept_scans, database);
+    Seal(database);
+    transaction.Commit();
+  } catch (const DatabaseError& error) {
+    throw std::runtime_error("cannot write " + path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace masked_mapper

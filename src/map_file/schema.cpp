@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "schema.hpp"
+
+#include <array>
+#include <vector>
+
+#include "packed_bytes.hpp"
+
+namespace masked_mapper {
+namespace {
+
+struct Table {
+  const char* name;
+  const char* columns;
+};
+
+// Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
+// are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
+constexpr std::array<Table, 12> kTables = {{
+    {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
+    {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
+    {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
+    {"other_messages", "id INTEGER PRIMARY KEY, name TEXT NOT NULL, count INTEGER NOT NULL"},
+    {"warnings", "id INTEGER PRIMARY KEY, text TEXT NOT NULL"},
+    {"floors",
+     "id INTEGER PRIMARY KEY, label TEXT NOT NULL, elevation ANY NOT NULL,"
+     " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL"},
+    {"nodes",
+     "id INTEGER PRIMARY KEY, stamp ANY NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
+     " odom_x ANY NOT NULL, odom_y ANY NOT NULL, odom_theta ANY NOT NULL,"
+     " world_x ANY NOT NULL, world_y ANY NOT NULL, world_theta ANY NOT NULL,"
+     " point_count INTEGER, points BLOB, points_checksum INTEGER"},
+    {"edges",
+     "id INTEGER PRIMARY KEY, from_node INTEGER NOT NULL REFERENCES nodes(id),"
+     " to_node INTEGER NOT NULL REFERENCES nodes(id), kind TEXT NOT NULL,"
+     " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL"},
+    {"attempts",
+     "id INTEGER PRIMARY KEY, a INTEGER NOT NULL REFERENCES nodes(id),"
+     " b INTEGER NOT NULL REFERENCES nodes(id),"
+     " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL,"
+     " score ANY NOT NULL, mahalanobis ANY NOT NULL, agreement ANY NOT NULL,"
+     " votes INTEGER NOT NULL, state TEXT NOT NULL, reason TEXT NOT NULL"},
+    {"trajectory",
+     "id INTEGER PRIMARY KEY, pose_count INTEGER NOT NULL, poses BLOB NOT NULL,"
+     " poses_checksum INTEGER NOT NULL"},
+    {"scans",
+     "id INTEGER PRIMARY KEY, trajectory_index INTEGER NOT NULL, stamp ANY NOT NULL,"
+     " laser_x ANY NOT NULL, laser_y ANY NOT NULL, laser_theta ANY NOT NULL,"
+     " first_angle ANY NOT NULL, angle_step ANY NOT NULL, max_range ANY NOT NULL,"
+     " odom_x ANY, odom_y ANY, odom_theta ANY,"
+     " beam_count INTEGER NOT NULL, ranges BLOB NOT NULL, ranges_checksum INTEGER NOT NULL"},
+    {"content",
+     "id INTEGER PRIMARY KEY, name TEXT NOT NULL, row_count INTEGER NOT NULL,"
+     " checksum INTEGER NOT NULL"},
+}};
+
+std::string CreateStatement(const Table& table) {
+  return std::string("CREATE TABLE ") + table.name + "(" + table.columns + ") STRICT";
+}
+
+struct RowDigest {
+  std::int64_t rows = 0;
+  std::uint32_t checksum = 0;
+};
+
+// Every value counts with its type, and text and blobs with their length, so that nothing can move
+// from one value to the next unnoticed.
+RowDigest DigestOf(const Database& database, const std::string& table) {
+  Statement rows(database, "SELECT * FROM " + table + " ORDER BY id");
+  RowDigest digest;
+  std::string head;
+  while (rows.Next()) {
+    ++digest.rows;
+    for (int column = 0; column < rows.columns(); ++column) {
+      const ValueType type = rows.NextType();
+      head.assign(1, static_cast<char>(type));
+      std::string_view body;
+      switch (type) {
+        case ValueType::kNull:
+          rows.Skip();
+          break;
+        case ValueType::kInteger:
+          AppendBytes(rows.Integer(), head);
+          break;
+        case ValueType::kReal:
+          AppendBytes(rows.Real(), head);
+          break;
+        case ValueType::kText:
+          body = rows.Text();
+          AppendBytes(std::uint64_t{body.size()}, head);
+          break;
+        case ValueType::kBlob:
+          body = rows.Blob();
+          AppendBytes(std::uint64_t{body.size()}, head);
+          break;
+      }
+      digest.checksum = Checksum(body, Checksum(head, digest.checksum));
+    }
+  }
+  return digest;
+}
+
+}  // namespace
+
+void MakeTables(Database& database) {
+  for (const Table& table : kTables) database.Run(CreateStatement(table));
+  database.Run("PRAGMA application_id = " + std::to_string(kMapApplicationId));
+  database.Run("PRAGMA user_version = " + std::to_string(kMapVersion));
+}
+
+void Seal(Database& database) {
+  Statement insert(database, "INSERT INTO content VALUES (?,?,?,?)");
+  for (std::size_t i = 0; i + 1 < kTables.size(); ++i) {
+    const RowDigest digest = DigestOf(database, kTables[i].name);
+    insert.Bind(static_cast<std::int64_t>(i)).BindText(kTables[i].name);
+    insert.Bind(digest.rows).Bind(std::int64_t{digest.checksum}).Put();
+  }
+}
+
+void CheckSeal(Database& database, std::int64_t /*version*/) {
+  // Tables first: what is not ours (a view, an index, a trigger) must not be run.
+  Statement schema(database, "SELECT sql FROM sqlite_master ORDER BY rowid");
+  std::size_t found = 0;
+  for (; schema.Next(); ++found) {
+    if (found == kTables.size() || schema.NextType() != ValueType::kText ||
+        schema.Text() != CreateStatement(kTables[found])) {
+      throw DatabaseError("its tables are not those of a saved map");
+    }
+  }
+  if (found != kTables.size()) throw DatabaseError("its tables are not those of a saved map");
+  if (database.Text("PRAGMA integrity_check(1)") != "ok") {
+    throw DatabaseError("its pages contradict each other");
+  }
+  Statement content(database, "SELECT name, row_count, checksum FROM content ORDER BY id");
+  std::size_t checked = 0;
+  for (; content.Next(); ++checked) {
+    const std::string name(content.Text());
+    if (checked + 1 >= kTables.size() || name != kTables[checked].name) {
+      throw DatabaseError("its table of contents is not that of a saved map");
+    }
+    const RowDigest digest = DigestOf(database, name);
+    const bool rows_agree = content.Integer() == digest.rows;
+    if (!rows_agree || content.Integer() != std::int64_t{digest.checksum}) {
+      throw DatabaseError("the rows of table " + name + " have changed since they were written");
+    }
+  }
+  if (checked + 1 != kTables.size()) throw DatabaseError("its table of contents is cut off");
+}
+
+void Upgrade(Database& /*database*/, std::int64_t /*version*/) {}
+
+}  // namespace masked_mapper

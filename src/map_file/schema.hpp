@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tables of a saved map (docs/map_file.md), and how its bytes are vouched for.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "database.hpp"
+
+namespace masked_mapper {
+
+constexpr std::int64_t kMapApplicationId = 0x4d6d6170;  // "Mmap"
+constexpr std::int64_t kMapVersion = 1;
+
+/// Makes the tables of the newest version in an empty database.
+void MakeTables(Database& database);
+
+/// Says in table `content` how many rows each table has and what their checksum is.
+void Seal(Database& database);
+
+/// Throws DatabaseError when the file is not whole: its pages, its tables, the checksums of their
+/// rows. `version` is the file's, between 1 and kMapVersion.
+void CheckSeal(Database& database, std::int64_t version);
+
+/// Changes the tables of an older version into those of the newest.
+void Upgrade(Database& database, std::int64_t version);
+
+}  // namespace masked_mapper

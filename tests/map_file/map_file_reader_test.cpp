@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/map_file/map_file_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "export/sample_map.hpp"
+#include "map_file/database.hpp"
+#include "map_file/same_map.hpp"
+#include "map_file/schema.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/map_file_writer.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+
+namespace masked_mapper {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Values that are easily lost on the way: zeros with a sign, what is not finite, odd bytes.
+MappingResult AwkwardMap() {
+  MappingResult map = SampleMap();
+  LaserScan& scan = map.kept_scans[1].scan;
+  scan.ranges = {1.5F, kNoReturn, kInvalidRange, 1e-38F};
+  scan.T_odom_robot = Pose2{-0.0, 1e-300, 3.0};
+  map.kept_scans[2].scan.ranges.clear();
+  map.trajectory[3].T_world_robot = {-0.0, 0.1, -0.2};
+  map.trajectory[3].stamp = 0.1 + 0.2;
+  map.motion_source = MotionSource::kScans;
+  map.log.first_bad_line = std::string("line 3: \xff\0 odd", 14);
+  map.log.truncated = true;
+  map.log.other_messages = {{"NEWDATA", 3}, {"SYNC", 7}};
+  map.log.max_range = 0.1;
+  map.warnings.emplace_back("");
+  return map;
+}
+
+std::string Refusal(const fs::path& path) {
+  try {
+    ReadMapFile(path);
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).rfind(path.string(), 0), 0U) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MapFileReader, GivesBackWhatWasWritten) {
+  const TestFolder folder;
+  MapOrigin origin{"a drive's \"log\"?%41#.gz", "any(openings,eccentricity)", {}};
+  SetOption("test", "matcher.min_score", "0.3", origin.options);
+  SetOption("test", "motion.source", "scans", origin.options);
+  SetOption("test", "log.scan_topic", "/scan", origin.options);
+  const MappingResult map = AwkwardMap();
+  WriteMapFile(origin, map, folder / "odd name?%41#.mmap");
+  const SavedMap read = ReadMapFile(folder / "odd name?%41#.mmap");
+  EXPECT_TRUE(SameMap(map, read.result));
+  EXPECT_EQ(read.origin.log, origin.log);
+  EXPECT_EQ(read.origin.mask, origin.mask);
+  EXPECT_EQ(OptionValues(read.origin.options), OptionValues(origin.options));
+}
+
+TEST(MapFileReader, AMapOfNothingIsAMap) {
+  const TestFolder folder;
+  WriteMapFile({}, {}, folder / "a.mmap");
+  EXPECT_TRUE(SameMap(ReadMapFile(folder / "a.mmap").result, {}));
+}
+
+TEST(MapFileReader, RefusesWhatIsNoMap) {
+  const TestFolder folder;
+  const auto refused = [&](const std::string& part, const fs::path& path) {
+    EXPECT_NE(Refusal(path).find(part), std::string::npos) << Refusal(path);
+  };
+  refused("no such file", folder / "missing");
+  refused("not a file", folder.path());
+  std::ofstream(folder / "empty").flush();
+  refused("not a saved map", folder / "empty");
+  std::ofstream(folder / "text") << "FLASER 3 1 2 3 and so on and on and on";
+  refused("not a saved map", folder / "text");
+  {
+    Database other(folder / "other", OpenMode::kWrite);
+    other.Run("CREATE TABLE t(a)");
+  }
+  refused("another database", folder / "other");
+}
+
+TEST(MapFileReader, RefusesANewerVersion) {
+  const TestFolder folder;
+  WriteMapFile({}, SampleMap(), folder / "a.mmap");
+  Database(folder / "a.mmap", OpenMode::kWrite).Run("PRAGMA user_version = 99");
+  EXPECT_NE(Refusal(folder / "a.mmap").find("newer"), std::string::npos);
+}
+
+// A damaged file is either read rightly (the damage fell where nothing is kept) or refused.
+TEST(MapFileReader, DamageIsNoticed) {
+  const TestFolder folder;
+  const MappingResult map = AwkwardMap();
+  WriteMapFile({}, map, folder / "a.mmap");
+  const std::string whole = ReadBytes(folder / "a.mmap");
+  std::mt19937 random(1);
+  const auto damaged = [&](const std::string& bytes) {
+    std::ofstream(folder / "b.mmap", std::ios::binary) << bytes;
+    if (Refusal(folder / "b.mmap").empty()) {
+      EXPECT_TRUE(SameMap(ReadMapFile(folder / "b.mmap").result, map));
+      return false;
+    }
+    return true;
+  };
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE(damaged(whole.substr(0, random() % whole.size()))) << i;
+  }
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string bytes = whole;
+    bytes[random() % bytes.size()] ^= static_cast<char>(1U << (random() % 8));
+    refused += damaged(bytes) ? 1 : 0;
+  }
+  EXPECT_GT(refused, 30);
+  for (int i = 0; i < 50; ++i) {  // a block of nothing, as a bad disk gives
+    std::string bytes = whole;
+    const std::size_t start = random() % bytes.size();
+    const std::size_t length = std::min<std::size_t>(512, bytes.size() - start);
+    bytes.replace(start, length, length, '\0');
+    damaged(bytes);
+  }
+}
+
+// Rows that no damage makes, but a hand: the checksums are right, what they say is not.
+TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* change : {
+           "UPDATE floors SET elevation = 9e999 WHERE id = 0",
+           "DELETE FROM floors WHERE id = 1",
+           "UPDATE nodes SET floor = 2 WHERE id = 1",
+           "UPDATE nodes SET floor = -1 WHERE id = 1",
+           "UPDATE nodes SET world_x = -9e999 WHERE id = 1",
+           "UPDATE nodes SET point_count = 1000000000000 WHERE id = 1",
+           "UPDATE nodes SET point_count = -1 WHERE id = 1",
+           "UPDATE nodes SET point_count = point_count + 1 WHERE id = 1",
+           "UPDATE nodes SET points = x'00' WHERE id = 1",
+           "UPDATE nodes SET points = NULL WHERE id = 1",
+           "DELETE FROM nodes WHERE id = 3",
+           "DELETE FROM nodes WHERE id = 1",
+           "UPDATE edges SET from_node = to_node WHERE id = 0",
+           "UPDATE edges SET to_node = 4 WHERE id = 0",
+           "UPDATE edges SET kind = 'closure' WHERE id = 2",
+           "UPDATE edges SET kind = 'rope' WHERE id = 2",
+           "UPDATE edges SET covariance = x'0000' WHERE id = 2",
+           "UPDATE attempts SET a = 99 WHERE id = 2",
+           "UPDATE attempts SET votes = 1 << 40 WHERE id = 2",
+           "UPDATE attempts SET state = 'sure' WHERE id = 2",
+           "UPDATE trajectory SET pose_count = 7",
+           "UPDATE trajectory SET poses_checksum = 0",
+           "DELETE FROM trajectory",
+           "UPDATE scans SET trajectory_index = 8 WHERE id = 0",
+           "UPDATE scans SET beam_count = 1 << 60 WHERE id = 0",
+           "UPDATE scans SET odom_x = 1.0 WHERE id = 0",
+           "UPDATE scans SET id = 99 WHERE id = 0",
+           "UPDATE run SET key = 'legs' WHERE key = 'mask'",
+           "UPDATE run SET value = 'wings' WHERE key = 'motion_source'",
+           "UPDATE options SET key = 'matcher.min_scoer' WHERE key = 'matcher.min_score'",
+           "UPDATE options SET value = '7' WHERE key = 'matcher.min_score'",
+           "UPDATE log_statistics SET value = 'many' WHERE key = 'scans'",
+       }) {
+    const fs::path path = folder / (std::to_string(number++) + ".mmap");
+    WriteMapFile({}, SampleMap(), path);
+    {
+      Database database(path, OpenMode::kWrite);
+      database.Run("PRAGMA foreign_keys = OFF");
+      database.Run(change);
+      database.Run("DELETE FROM content");
+      Seal(database);
+    }
+    EXPECT_FALSE(Refusal(path).empty()) << change;
+  }
+}
+
+TEST(MapFileReader, RefusesTablesThatAreNotOurs) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* change : {"CREATE TABLE more(a)", "CREATE INDEX i ON nodes(stamp)",
+                             "DROP TABLE scans; CREATE VIEW scans AS SELECT * FROM nodes",
+                             "ALTER TABLE nodes ADD COLUMN more ANY", "DELETE FROM content",
+                             "DELETE FROM content WHERE id = 10",
+                             "CREATE TRIGGER t AFTER INSERT ON run BEGIN SELECT 1; END"}) {
+    const fs::path path = folder / (std::to_string(number++) + ".mmap");
+    WriteMapFile({}, SampleMap(), path);
+    Database(path, OpenMode::kWrite).Run(change);
+    EXPECT_FALSE(Refusal(path).empty()) << change;
+  }
+}
+
+}  // namespace
+}  // namespace masked_mapper
