@@ -12,6 +12,7 @@ namespace masked_mapper {
 using Run = std::function<int()>;
 
 void AddEvaluateCommand(CLI::App& program, Run& run);
+void AddExportCommand(CLI::App& program, Run& run);
 void AddInfoCommand(CLI::App& program, Run& run);
 void AddMapCommand(CLI::App& program, Run& run);
 void AddSimulateCommand(CLI::App& program, Run& run);

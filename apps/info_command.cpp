@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// masked_mapper info LOG [--json]
+// masked_mapper info LOG|OUT|MAP [--json]
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "map_info.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "option_flags.hpp"
+#include "saved_map_path.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -156,7 +158,12 @@ void PrintJson(const std::string& log, const LogSummary& summary) {
 }
 
 int RunInfo(const InfoArguments& arguments) {
-  const LogSummary summary = Summarise(arguments.log, ReadOptions(arguments.options).log);
+  const Options options = ReadOptions(arguments.options);
+  if (IsOutOrMap(arguments.log)) {
+    PrintMapInfo(arguments.log, arguments.json);
+    return 0;
+  }
+  const LogSummary summary = Summarise(arguments.log, options.log);
   (arguments.json ? PrintJson : PrintText)(arguments.log, summary);
   return 0;
 }
@@ -166,15 +173,20 @@ int RunInfo(const InfoArguments& arguments) {
 void AddInfoCommand(CLI::App& program, Run& run) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command =
-      program.add_subcommand("info", "Say what is in a log, and whether it is sound");
-  command->add_option("LOG", arguments->log, "the robot's log")->required();
+      program.add_subcommand("info", "Say what is in a log or in a map, and whether it is sound");
+  command
+      ->add_option("LOG", arguments->log,
+                   "the robot's log, or a folder that `map` wrote, or its building.mmap")
+      ->required()
+      ->type_name("LOG|OUT|MAP");
   command->add_flag("--json", arguments->json, "as JSON, for programs");
   AddOptionFlags(*command, arguments->options);
   command->add_flag("--quiet", arguments->quiet, "print errors and the result only");
   command->footer(
       "Examples:\n"
       "  masked_mapper info drive.log.gz\n"
-      "  masked_mapper info drive.log.gz --json | jq .warnings");
+      "  masked_mapper info drive.log.gz --json | jq .warnings\n"
+      "  masked_mapper info out");
   command->callback([arguments, &run] { run = [arguments] { return RunInfo(*arguments); }; });
 }
 

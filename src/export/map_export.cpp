@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <future>
 #include <string>
+#include <utility>
 
 #include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/export/floor_label.hpp"
@@ -53,17 +54,25 @@ void WriteFloors(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids
 
 }  // namespace
 
-std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options) {
+std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
+                                   const std::optional<FloorId>& floor) {
   std::vector<PosedScan> scans;
   scans.reserve(result.kept_scans.size());
   for (const KeptScan& kept : result.kept_scans) {
     const TrajectoryPose& pose = result.trajectory.at(kept.trajectory_index);
     if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
   }
-  std::vector<OccupancyGrid> grids;
-  for (std::size_t floor = 0; floor < result.graph.floors().size(); ++floor) {
-    grids.push_back(RenderGrid(scans, static_cast<std::int32_t>(floor), options));
+  std::vector<FloorGrid> grids;
+  for (std::size_t i = 0; i < result.graph.floors().size(); ++i) {
+    const auto id = static_cast<FloorId>(i);
+    if (!floor || *floor == id) grids.push_back({id, RenderGrid(scans, id, options)});
   }
+  return grids;
+}
+
+std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options) {
+  std::vector<OccupancyGrid> grids;
+  for (FloorGrid& grid : RenderGrids(result, options, {})) grids.push_back(std::move(grid.grid));
   return grids;
 }
 

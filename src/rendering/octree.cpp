@@ -60,6 +60,15 @@ KeyRange CheckedKeys(double first_cell, double count, double resolution_m) {
   return {static_cast<int>(low), static_cast<int>(high)};
 }
 
+// What of the range lies inside the band; nothing is [0, 0).
+KeyRange Clipped(const KeyRange& range, const HeightBand& heights, double resolution_m) {
+  const double low = std::ceil(heights.low_m / resolution_m - 0.5) + kKeyOfOrigin;
+  const double high = std::floor(heights.high_m / resolution_m - 0.5) + 1.0 + kKeyOfOrigin;
+  if (!(low < range.high && high > range.low && low < high)) return {};
+  return {low > range.low ? static_cast<int>(low) : range.low,
+          high < range.high ? static_cast<int>(high) : range.high};
+}
+
 // The sets of states in all aligned squares of a grid, level by level; what lies outside is
 // unknown.
 class StatePyramid {
@@ -155,14 +164,16 @@ class StatePyramid {
 // One floor in three dimensions.
 class FloorVolume {
  public:
-  FloorVolume(const FloorLayer& layer, const OctreeOptions& options) : pyramid_(*layer.grid) {
+  FloorVolume(const FloorLayer& layer, const OctreeOptions& options, const HeightBand& heights)
+      : pyramid_(*layer.grid) {
     const double resolution = layer.grid->resolution_m;
     const double bottom = std::round(layer.elevation / resolution);
     const double walls = std::max(1.0, std::round(options.wall_height_m / resolution));
     const double slab =
         std::exp2(std::max(0.0, std::round(std::log2(options.free_height_m / resolution))));
-    walls_ = CheckedKeys(bottom, walls, resolution);
-    free_ = CheckedKeys(std::ceil(bottom / slab) * slab, slab, resolution);
+    walls_ = Clipped(CheckedKeys(bottom, walls, resolution), heights, resolution);
+    free_ = Clipped(CheckedKeys(std::ceil(bottom / slab) * slab, slab, resolution), heights,
+                    resolution);
   }
 
   // The states that voxels of the block may have.
@@ -273,7 +284,8 @@ class TreeBuilder {
 }  // namespace
 
 std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
-                                             const OctreeOptions& options) {
+                                             const OctreeOptions& options,
+                                             const HeightBand& heights) {
   assert(options.wall_height_m > 0.0 && options.free_height_m > 0.0);
   double resolution = GridOptions().resolution_m;
   std::vector<FloorVolume> volumes;
@@ -281,7 +293,7 @@ std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floo
     if (floor.grid->cells.empty()) continue;
     assert(volumes.empty() || floor.grid->resolution_m == resolution);
     resolution = floor.grid->resolution_m;
-    volumes.emplace_back(floor, options);
+    volumes.emplace_back(floor, options, heights);
   }
   auto tree = std::make_shared<RootedTree>(resolution);
   TreeBuilder(volumes, tree.get()).Build();

@@ -141,6 +141,28 @@ TEST(BuildOctree, AlignedSlabPrunesWhatOneLayerCannot) {
   EXPECT_LT(slab, 2500U);
 }
 
+TEST(BuildOctree, HeightsLeaveOutWhatIsOutside) {
+  std::mt19937 random(3);
+  const OccupancyGrid lower = RandomGrid(&random);
+  const OccupancyGrid upper = RandomGrid(&random);
+  const std::vector<FloorLayer> floors = {{&lower, 0.0}, {&upper, 1.0}};
+  const auto whole = BuildOctree(floors, {});
+  const double resolution = lower.resolution_m;
+  for (const HeightBand& heights : {HeightBand{0.31, 1.24}, HeightBand{-9.0, 0.5},
+                                    HeightBand{1.0, 9.0}, HeightBand{0.9, 0.9}}) {
+    const auto cut = BuildOctree(floors, {}, heights);
+    for (int i = 0; i < 20000; ++i) {
+      const int x = static_cast<int>(random() % 160) - 80;
+      const int y = static_cast<int>(random() % 160) - 80;
+      const int z = static_cast<int>(random() % 70) - 5;
+      const double middle = (z + 0.5) * resolution;
+      const bool inside = middle >= heights.low_m && middle <= heights.high_m;
+      ASSERT_EQ(StateOf(*cut, x, y, z), inside ? StateOf(*whole, x, y, z) : Cell::kUnknown)
+          << "voxel " << x << " " << y << " " << z;
+    }
+  }
+}
+
 TEST(BuildOctree, NothingGivesAnEmptyTree) {
   const OccupancyGrid empty;
   const OccupancyGrid unknown = GridOf(0, 0, 3, 4, Cell::kUnknown);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "masked_mapper/export/summary_file.hpp"
@@ -20,7 +21,16 @@ struct ExportOptions {
   OctreeOptions octree;
 };
 
-/// The grid of each floor, by FloorId, from all kept scans but those in transit.
+struct FloorGrid {
+  FloorId floor = 0;
+  OccupancyGrid grid;
+};
+
+/// The grid of one floor, or of all, from all kept scans but those in transit.
+std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
+                                   const std::optional<FloorId>& floor);
+
+/// The grid of each floor, by FloorId.
 std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options);
 
 /// Writes all files into `folder`, which exists (OutputFolder). To the seconds of the result those

@@ -5,6 +5,7 @@
 // cubes.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -26,13 +27,26 @@ struct FloorLayer {
   double elevation = 0.0;  ///< m
 };
 
+/// Heights in world, m.
+struct HeightBand {
+  double low_m = -std::numeric_limits<double>::infinity();
+  double high_m = std::numeric_limits<double>::infinity();
+
+  bool operator==(const HeightBand& other) const {
+    return low_m == other.low_m && high_m == other.high_m;
+  }
+  bool operator!=(const HeightBand& other) const { return !(*this == other); }
+};
+
 /// A pruned tree whose voxels are the grids' cells: an occupied cell is a wall column that starts
 /// at the floor's elevation; a free cell is free in the first aligned slab at or above it (so less
 /// than `free_height_m` above it; inside the walls' height as long as walls are twice as high as
 /// the slab). Where floors overlap, a wall of one outvotes the free space of another. All grids
 /// have one resolution; empty ones are ignored. Throws InputError when the building reaches beyond
-/// what the tree's 16-bit keys can address (32768 voxels from the origin).
+/// what the tree's 16-bit keys can address (32768 voxels from the origin). Voxels with their middle
+/// outside `heights` are left out.
 std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
-                                             const OctreeOptions& options);
+                                             const OctreeOptions& options,
+                                             const HeightBand& heights = {});
 
 }  // namespace masked_mapper

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// masked_mapper export OUT|MAP --format F -o FILE
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "commands.hpp"
+#include "masked_mapper/export/single_export.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "saved_map_path.hpp"
+
+namespace masked_mapper {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+  std::string map;
+  std::string format;
+  std::string file;
+  std::string floor;
+  std::string resolution;
+  HeightBand heights;
+  bool quiet = false;
+};
+
+/// A folder beside the file, gone in the end: what is written half never stands in the file's
+/// place.
+class AsideFolder {
+ public:
+  explicit AsideFolder(const fs::path& file)
+      : path_(file.parent_path() /
+              ("." + file.filename().string() + ".partial-" + std::to_string(getpid()))) {
+    std::error_code error;
+    fs::create_directory(path_, error);
+    if (error) throw InputError("cannot write " + file.string() + ": " + error.message());
+  }
+  ~AsideFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  AsideFolder(const AsideFolder&) = delete;
+  AsideFolder& operator=(const AsideFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// The format by name. Throws InputError that names all.
+ExportFormat FormatNamed(const std::string& name) {
+  const std::vector<std::string>& names = ExportFormatNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<ExportFormat>(found - names.begin());
+  std::string all;
+  for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
+  throw InputError("export: --format must be one of " + all + ", not `" + name + "`");
+}
+
+int RunExport(const ExportArguments& arguments) {
+  SingleExport wanted;
+  wanted.format = FormatNamed(arguments.format);
+  wanted.heights = arguments.heights;
+  const fs::path file = fs::absolute(arguments.file);
+  if (!file.has_filename()) throw InputError(arguments.file + ": not the name of a file");
+  if (fs::exists(file) && !fs::is_regular_file(file)) {
+    throw InputError(arguments.file + " exists and is not a file");
+  }
+  SavedMap map = ReadMapFile(MapFileOf(arguments.map));
+  if (!arguments.resolution.empty()) {
+    SetOption("--resolution", "grid.resolution_m", arguments.resolution, map.origin.options);
+  }
+  if (!arguments.floor.empty()) {
+    wanted.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);
+  }
+  ExportOptions options{map.origin.options.grid, map.origin.options.octree};
+  options.grid.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const AsideFolder aside(file);
+  std::string written;
+  for (const fs::path& part :
+       WriteSingleExport(map.result, options, wanted, aside.path() / file.filename())) {
+    fs::rename(part, file.parent_path() / part.filename());
+    const fs::path name = fs::path(arguments.file).parent_path() / part.filename();
+    written += (written.empty() ? "" : ", ") + name.string();
+  }
+  if (!arguments.quiet) std::cout << arguments.format << ": " << written << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void AddExportCommand(CLI::App& program, Run& run) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command =
+      program.add_subcommand("export", "Write a map in one format, from the saved map alone");
+  command->add_option("OUT", arguments->map, "what `map` wrote, or the building.mmap in it")
+      ->required()
+      ->type_name("OUT|MAP");
+  command->add_option("--format", arguments->format, "octomap, pcd, ply, grid, tum or g2o")
+      ->required()
+      ->type_name("F");
+  command->add_option("-o,--output", arguments->file, "the file to write; one there is replaced")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--floor", arguments->floor, "this floor only")->type_name("LABEL");
+  command
+      ->add_option("--resolution", arguments->resolution,
+                   "side of a cell or voxel, m; as mapped unless given")
+      ->type_name("METRES");
+  command->add_option("--zmin", arguments->heights.low_m, "leave out what is lower, m")
+      ->type_name("METRES");
+  command->add_option("--zmax", arguments->heights.high_m, "leave out what is higher, m")
+      ->type_name("METRES");
+  command->add_flag("--quiet", arguments->quiet, "print errors only");
+  command->footer(
+      "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
+      "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph).\n"
+      "With nothing else asked for, the bytes are those that `map` wrote.\n\n"
+      "Examples:\n"
+      "  masked_mapper export out --format octomap -o coarse.bt --resolution 0.2\n"
+      "  masked_mapper export out/building.mmap --format grid --floor 2 -o second_floor.pgm\n"
+      "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd");
+  command->callback([arguments, &run] { run = [arguments] { return RunExport(*arguments); }; });
+}
+
+}  // namespace masked_mapper

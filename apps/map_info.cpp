@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_info.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "masked_mapper/export/closures_file.hpp"
+#include "masked_mapper/export/map_export.hpp"
+#include "masked_mapper/export/number_text.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "saved_map_path.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MapFacts {
+  std::filesystem::path file;
+  std::uintmax_t bytes = 0;
+  Summary summary;
+  double duration_s = 0.0;
+  double path_length_m = 0.0;  ///< along the optimised trajectory, floors by their plan alone
+  std::uint64_t kept_scans = 0;
+  std::vector<std::pair<std::string, std::uint64_t>> edges;   ///< by kind
+  std::vector<std::pair<std::string, std::uint64_t>> states;  ///< of attempts
+  std::vector<std::pair<std::string, std::string>> changed;   ///< options that are not the default
+};
+
+std::vector<std::pair<std::string, std::string>> ChangedOptions(const Options& options) {
+  Options ours = options;
+  Options defaults;
+  const std::vector<OptionEntry> table = OptionTable(ours);
+  const std::vector<OptionEntry> default_table = OptionTable(defaults);
+  std::vector<std::pair<std::string, std::string>> changed;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].key == "threads") continue;
+    const std::string value = ValueText(table[i]);
+    if (value != ValueText(default_table[i])) changed.emplace_back(table[i].key, value);
+  }
+  return changed;
+}
+
+MapFacts FactsOf(const std::string& out_or_map) {
+  MapFacts facts;
+  facts.file = MapFileOf(out_or_map);
+  const SavedMap map = ReadMapFile(facts.file);
+  facts.bytes = std::filesystem::file_size(facts.file);
+  const MappingResult& result = map.result;
+  facts.summary =
+      Summarise(result, {map.origin.log, map.origin.mask, OptionValues(map.origin.options)},
+                RenderFloors(result, map.origin.options.grid));
+  const std::vector<TrajectoryPose>& trajectory = result.trajectory;
+  if (!trajectory.empty()) facts.duration_s = trajectory.back().stamp - trajectory.front().stamp;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    facts.path_length_m += Distance(trajectory[i - 1].T_world_robot, trajectory[i].T_world_robot);
+  }
+  facts.kept_scans = result.kept_scans.size();
+  facts.edges = {{"odometry", 0}, {"floor_change", 0}, {"closure", 0}};
+  for (const Edge& edge : result.graph.edges()) {
+    ++facts.edges[static_cast<std::size_t>(edge.kind)].second;
+  }
+  for (const auto state : {ClosureState::kRejectedScore, ClosureState::kHypothesis,
+                           ClosureState::kValidated, ClosureState::kAuditedOut}) {
+    facts.states.emplace_back(StateName(state), 0);
+  }
+  for (const ClosureAttempt& attempt : result.attempts) {
+    ++facts.states[static_cast<std::size_t>(attempt.state)].second;
+  }
+  facts.changed = ChangedOptions(map.origin.options);
+  return facts;
+}
+
+void PrintText(const MapFacts& facts) {
+  const auto line = [](const std::string& name, const std::string& value) {
+    std::cout << "  " << name << std::string(name.size() < 14 ? 14 - name.size() : 1, ' ') << value
+              << "\n";
+  };
+  const Summary& summary = facts.summary;
+  std::cout << facts.file.string() << "\n";
+  line("made from", summary.run.log);
+  line("mask", summary.run.mask);
+  line("motion by", summary.motion_source);
+  line("duration", FixedText(facts.duration_s, 1) + " s");
+  line("path", FixedText(facts.path_length_m, 1) + " m, " + std::to_string(summary.counts.scans) +
+                   " scans, " + std::to_string(facts.kept_scans) + " of them kept");
+  line("nodes", std::to_string(summary.counts.nodes) + ", " +
+                    std::to_string(summary.counts.scan_nodes) + " with a scan");
+  std::string edges;
+  for (const auto& [kind, count] : facts.edges) {
+    edges += (edges.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+  }
+  line("edges", edges);
+  std::string attempts = std::to_string(summary.counts.attempted) + " pairs tried";
+  for (const auto& [state, count] : facts.states) {
+    attempts += ", " + std::to_string(count) + " " + state;
+  }
+  line("closures", attempts);
+  for (const Summary::FloorEntry& floor : summary.floors) {
+    line("floor " + floor.label, "at " + FixedText(floor.elevation_m, 2) + " m" +
+                                     (floor.elevation_measured ? "" : " (assumed)") + ", " +
+                                     std::to_string(floor.nodes) + " nodes, " +
+                                     FixedText(floor.area_m2, 1) + " m2 known");
+  }
+  for (const auto& [key, value] : facts.changed) line("option", key + " = " + value);
+  line("file", FixedText(static_cast<double>(facts.bytes) / (1 << 20), 1) + " MiB");
+  for (const std::string& warning : summary.warnings) line("warning", warning);
+}
+
+void PrintJson(const MapFacts& facts) {
+  const Summary& summary = facts.summary;
+  Json floors = Json::array();
+  for (const Summary::FloorEntry& floor : summary.floors) {
+    floors.push_back({{"label", floor.label},
+                      {"elevation_m", floor.elevation_m},
+                      {"elevation_measured", floor.elevation_measured},
+                      {"nodes", floor.nodes},
+                      {"area_m2", floor.area_m2}});
+  }
+  Json edges = Json::object();
+  for (const auto& [kind, count] : facts.edges) edges[kind] = count;
+  Json states = Json::object();
+  for (const auto& [state, count] : facts.states) states[state] = count;
+  Json changed = Json::object();
+  for (const auto& [key, value] : facts.changed) changed[key] = value;
+  const Json json = {{"map", facts.file.string()},
+                     {"bytes", facts.bytes},
+                     {"log", summary.run.log},
+                     {"mask", summary.run.mask},
+                     {"motion_source", summary.motion_source},
+                     {"duration_s", facts.duration_s},
+                     {"path_length_m", facts.path_length_m},
+                     {"counts",
+                      {{"observations", summary.counts.observations},
+                       {"scans", summary.counts.scans},
+                       {"kept_scans", facts.kept_scans},
+                       {"nodes", summary.counts.nodes},
+                       {"scan_nodes", summary.counts.scan_nodes},
+                       {"odometry_nodes", summary.counts.odometry_nodes},
+                       {"attempted", summary.counts.attempted},
+                       {"matched", summary.counts.matched},
+                       {"validated", summary.counts.validated}}},
+                     {"edges", edges},
+                     {"closures", states},
+                     {"floors", floors},
+                     {"changed_options", changed},
+                     {"warnings", summary.warnings}};
+  // A path may hold bytes that are no UTF-8.
+  std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+}  // namespace
+
+void PrintMapInfo(const std::string& out_or_map, bool as_json) {
+  (as_json ? PrintJson : PrintText)(FactsOf(out_or_map));
+}
+
+}  // namespace masked_mapper

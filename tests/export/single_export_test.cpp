@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/export/single_export.hpp"
+
+#include <gtest/gtest.h>
+
+#include "export/sample_map.hpp"
+#include "masked_mapper/log/input_error.hpp"
+
+namespace masked_mapper {
+namespace {
+
+TEST(SingleExport, SameBytesAsInTheFolderOfTheMap) {
+  const TestFolder folder;
+  const MappingResult map = SampleMap();
+  WriteMap(map, {}, {}, folder.path());
+  std::filesystem::create_directory(folder / "single");
+  const struct {
+    ExportFormat format;
+    std::optional<FloorId> floor;
+    const char* of_map;
+    const char* name;
+  } all[] = {
+      {ExportFormat::kOctomap, {}, "building.bt", "a.bt"},
+      {ExportFormat::kPcd, {}, "building.pcd", "a.pcd"},
+      {ExportFormat::kPly, {}, "building.ply", "a.ply"},
+      {ExportFormat::kTum, {}, "trajectory.tum", "a.tum"},
+      {ExportFormat::kG2o, {}, "graph.g2o", "a.g2o"},
+      {ExportFormat::kPcd, 1, "floors/-1.pcd", "b.pcd"},
+      {ExportFormat::kG2o, 1, "floors/-1.g2o", "b.g2o"},
+      {ExportFormat::kGrid, 1, "floors/-1.pgm", "-1.pgm"},
+      {ExportFormat::kGrid, 0, "floors/0.yaml", "0.yaml"},
+  };
+  for (const auto& one : all) {
+    const std::filesystem::path path = folder / (std::string("single/") + one.name);
+    WriteSingleExport(map, {}, {one.format, one.floor, {}}, path);
+    EXPECT_EQ(ReadBytes(path), ReadBytes(folder / one.of_map)) << one.of_map;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "single/-1.yaml"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "single/0.pgm"));
+}
+
+TEST(SingleExport, AFloorHasItsPosesAlone) {
+  const TestFolder folder;
+  WriteSingleExport(SampleMap(), {}, {ExportFormat::kTum, 1, {}}, folder / "a.tum");
+  EXPECT_EQ(Split(ReadBytes(folder / "a.tum"), '\n').size(), 2U);
+}
+
+TEST(SingleExport, HeightsLeaveOutFloors) {
+  const TestFolder folder;
+  const MappingResult map = SampleMap();
+  WriteSingleExport(map, {}, {ExportFormat::kPcd, {}, {-1.0, 9.0}}, folder / "upper.pcd");
+  WriteSingleExport(map, {}, {ExportFormat::kPcd, 0, {}}, folder / "ground.pcd");
+  EXPECT_EQ(ReadBytes(folder / "upper.pcd"), ReadBytes(folder / "ground.pcd"));
+  WriteSingleExport(map, {}, {ExportFormat::kPcd, {}, {5.0, 9.0}}, folder / "none.pcd");
+  EXPECT_NE(ReadBytes(folder / "none.pcd").find("POINTS 0"), std::string::npos);
+}
+
+TEST(SingleExport, SaysWhatCannotBe) {
+  const std::vector<Floor> floors = SampleMap().graph.floors();
+  EXPECT_THROW(CheckSingleExport({ExportFormat::kGrid, {}, {}}, floors), InputError);
+  EXPECT_NO_THROW(CheckSingleExport({ExportFormat::kGrid, 1, {}}, floors));
+  EXPECT_THROW(CheckSingleExport({ExportFormat::kTum, {}, {0.0, 1.0}}, floors), InputError);
+  EXPECT_THROW(CheckSingleExport({ExportFormat::kPcd, {}, {1.0, 0.0}}, floors), InputError);
+  EXPECT_EQ(FloorOfLabel(floors, "-1"), 1);
+  try {
+    FloorOfLabel(floors, "7");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("0, -1"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace masked_mapper
