@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// masked_mapper evaluate OUT [--relations FILE] [--truth FILE] [--json]
+// masked_mapper evaluate OUT [--relations FILE] [--truth FILE] [--checked OUT...] [--json]
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "masked_mapper/evaluation/closures.hpp"
@@ -26,6 +28,7 @@ struct EvaluateArguments {
   std::string folder;
   std::string relations;
   std::string truth;
+  std::vector<std::string> checked;
   bool json = false;
   bool quiet = false;
 };
@@ -39,12 +42,40 @@ struct Evaluation {
   std::optional<PathLengthError> path_length;
 };
 
+MappedGraph GraphOf(const ResultFolder& result, const std::string& folder) {
+  if (result.graph && result.graph->nodes.size() > 1) return *result.graph;
+  throw InputError("--checked: " + folder + " has no graph of two nodes or more");
+}
+
+/// With --checked, the paper's truth: the shortest way over maps that are free of false closures.
+std::optional<PathLengthError> ErrorAgainstChecked(const EvaluateArguments& arguments,
+                                                   const ResultFolder& result,
+                                                   const std::vector<StampPair>& pairs) {
+  const auto stamps = [](const ResultFolder& map) {
+    return std::make_pair(map.trajectory.front().stamp, map.trajectory.back().stamp);
+  };
+  std::vector<MappedGraph> checked;
+  for (const std::string& folder : arguments.checked) {
+    const ResultFolder map = ReadResultFolder(folder);
+    checked.push_back(GraphOf(map, folder));
+    if (stamps(map) != stamps(result)) {
+      throw InputError("--checked: " + folder + " is no map of the log of " + arguments.folder);
+    }
+  }
+  return CompareWithCheckedMaps(GraphOf(result, arguments.folder), checked, pairs);
+}
+
 Evaluation Evaluate(const EvaluateArguments& arguments) {
   const ResultFolder result = ReadResultFolder(arguments.folder);
   Evaluation evaluation;
   if (!arguments.relations.empty()) {
     evaluation.relations =
         CompareWithRelations(result.trajectory, ReadRelations(arguments.relations));
+  }
+  const std::vector<StampPair> pairs =
+      DrawStampPairs(result.trajectory.front().stamp, result.trajectory.back().stamp);
+  if (!arguments.checked.empty()) {
+    evaluation.path_length = ErrorAgainstChecked(arguments, result, pairs);
   }
   if (arguments.truth.empty()) return evaluation;
   const Truth truth = ReadTruth(arguments.truth);
@@ -56,7 +87,9 @@ Evaluation Evaluate(const EvaluateArguments& arguments) {
   if (result.closures) {
     evaluation.closures = CheckClosures(*result.graph, *result.closures, true_nodes, tolerance);
   }
-  evaluation.path_length = ComparePathLengths(*result.graph, true_nodes, tolerance);
+  if (arguments.checked.empty()) {
+    evaluation.path_length = ComparePathLengths(*result.graph, true_nodes, pairs, tolerance);
+  }
   return evaluation;
 }
 
@@ -236,8 +269,8 @@ void PrintText(const Evaluation& evaluation) {
 }
 
 int RunEvaluate(const EvaluateArguments& arguments) {
-  if (arguments.relations.empty() && arguments.truth.empty()) {
-    throw InputError("evaluate: nothing to compare with: give --relations or --truth");
+  if (arguments.relations.empty() && arguments.truth.empty() && arguments.checked.empty()) {
+    throw InputError("evaluate: nothing to compare with: give --relations, --truth or --checked");
   }
   const Evaluation evaluation = Evaluate(arguments);
   if (!arguments.truth.empty() && !evaluation.trajectory) {
@@ -263,6 +296,12 @@ void AddEvaluateCommand(CLI::App& program, Run& run) {
   command->add_option("--truth", arguments->truth,
                       "true poses, lines `t x y z qx qy qz qw` or `t x y theta`; a name that ends "
                       "in .truth.tum says that they are exact");
+  command
+      ->add_option(
+          "--checked", arguments->checked,
+          "maps of the same log without false closures: the shortest of their ways are the "
+          "true lengths that path lengths are held against")
+      ->type_name("OUT...");
   command->add_flag("--json", arguments->json, "as JSON, for programs");
   command->add_flag("--quiet", arguments->quiet, "print errors and the result only");
   command->footer(
@@ -270,7 +309,8 @@ void AddEvaluateCommand(CLI::App& program, Run& run) {
       "off by more than 0.5 m or 5 deg (1 m or 15 deg where the truth is not exact).\n\n"
       "Examples:\n"
       "  masked_mapper evaluate out --relations aces.relations\n"
-      "  masked_mapper evaluate out --truth campus.log.truth.tum --json");
+      "  masked_mapper evaluate out --truth campus.log.truth.tum --json\n"
+      "  masked_mapper evaluate out --checked out other-mask");
   command->callback([arguments, &run] { run = [arguments] { return RunEvaluate(*arguments); }; });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "masked_mapper/evaluation/shortest_path.hpp"
@@ -97,35 +98,71 @@ double ShortestWay(const Walkable& walkable, const Place& from, const Place& to)
   return std::min(around, std::abs(to.fraction - from.fraction) * from_step);
 }
 
-}  // namespace
-
-std::optional<PathLengthError> ComparePathLengths(
-    const MappedGraph& graph, const std::vector<std::optional<StampedPose>>& truth,
-    const ClosureTolerance& tolerance, const PathLengthOptions& options) {
-  const std::vector<StampedPose>& nodes = graph.nodes;
-  const bool known =
-      std::any_of(truth.begin(), truth.end(), [](const auto& pose) { return pose.has_value(); });
-  if (nodes.size() < 2 || !known || options.pairs == 0) return std::nullopt;
-  const Walkable mapped = AsMapped(graph);
-  const Walkable real = AsItIs(graph, truth, tolerance, options.revisits);
-  std::mt19937_64 generator(options.seed);
-  const auto draw = [&] {  // 53 bits, the same on every standard library
-    const double share = static_cast<double>(generator() >> 11) * 0x1p-53;
-    const double first = nodes.front().stamp;
-    return PlaceOf(nodes, first + share * (nodes.back().stamp - first));
-  };
+/// The error of ways of lengths `mapped` whose true lengths are `real`.
+PathLengthError ErrorOf(const std::vector<double>& mapped, const std::vector<double>& real) {
   PathLengthError error;
+  const double count = static_cast<double>(mapped.size());
   std::vector<double> magnitudes;
-  for (std::size_t i = 0; i < options.pairs; ++i) {
-    const Place from = draw();
-    const Place to = draw();
-    const double too_long = ShortestWay(mapped, from, to) - ShortestWay(real, from, to);
+  for (std::size_t i = 0; i < mapped.size(); ++i) {
+    const double too_long = mapped[i] - real[i];
     magnitudes.push_back(std::abs(too_long));
-    error.missing_m += std::max(too_long, 0.0) / static_cast<double>(options.pairs);
-    error.false_m += std::max(-too_long, 0.0) / static_cast<double>(options.pairs);
+    error.missing_m += std::max(too_long, 0.0) / count;
+    error.false_m += std::max(-too_long, 0.0) / count;
   }
   error.error_m = StatisticsOf(magnitudes);
   return error;
+}
+
+std::vector<double> ShortestWays(const Walkable& walkable, const std::vector<StampedPose>& nodes,
+                                 const std::vector<StampPair>& pairs) {
+  std::vector<double> lengths;
+  lengths.reserve(pairs.size());
+  for (const StampPair& pair : pairs) {
+    lengths.push_back(ShortestWay(walkable, PlaceOf(nodes, pair.from), PlaceOf(nodes, pair.to)));
+  }
+  return lengths;
+}
+
+}  // namespace
+
+std::vector<StampPair> DrawStampPairs(double first, double last, const PathLengthOptions& options) {
+  std::mt19937_64 generator(options.seed);
+  const auto draw = [&] {  // 53 bits, the same on every standard library
+    return first + static_cast<double>(generator() >> 11) * 0x1p-53 * (last - first);
+  };
+  std::vector<StampPair> pairs(options.pairs);
+  for (StampPair& pair : pairs) {
+    pair.from = draw();
+    pair.to = draw();
+  }
+  return pairs;
+}
+
+std::optional<PathLengthError> ComparePathLengths(
+    const MappedGraph& graph, const std::vector<std::optional<StampedPose>>& truth,
+    const std::vector<StampPair>& pairs, const ClosureTolerance& tolerance,
+    const RevisitOptions& revisits) {
+  const bool known =
+      std::any_of(truth.begin(), truth.end(), [](const auto& pose) { return pose.has_value(); });
+  if (graph.nodes.size() < 2 || !known || pairs.empty()) return std::nullopt;
+  return ErrorOf(ShortestWays(AsMapped(graph), graph.nodes, pairs),
+                 ShortestWays(AsItIs(graph, truth, tolerance, revisits), graph.nodes, pairs));
+}
+
+std::optional<PathLengthError> CompareWithCheckedMaps(const MappedGraph& graph,
+                                                      const std::vector<MappedGraph>& checked,
+                                                      const std::vector<StampPair>& pairs) {
+  const auto walkable = [](const MappedGraph& map) { return map.nodes.size() >= 2; };
+  if (!walkable(graph) || checked.empty() || pairs.empty()) return std::nullopt;
+  if (!std::all_of(checked.begin(), checked.end(), walkable)) return std::nullopt;
+  std::vector<double> shortest(pairs.size(), std::numeric_limits<double>::infinity());
+  for (const MappedGraph& map : checked) {
+    const std::vector<double> lengths = ShortestWays(AsMapped(map), map.nodes, pairs);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      shortest[i] = std::min(shortest[i], lengths[i]);
+    }
+  }
+  return ErrorOf(ShortestWays(AsMapped(graph), graph.nodes, pairs), shortest);
 }
 
 }  // namespace masked_mapper

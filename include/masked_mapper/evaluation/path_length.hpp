@@ -21,6 +21,16 @@ struct PathLengthOptions {
   RevisitOptions revisits;
 };
 
+/// Two stamps of the drive, s.
+struct StampPair {
+  double from = 0.0;
+  double to = 0.0;
+};
+
+/// Drawn evenly between the first and the last stamp of the log, so the same for every map of it.
+std::vector<StampPair> DrawStampPairs(double first, double last,
+                                      const PathLengthOptions& options = {});
+
 struct PathLengthError {
   ErrorStatistics error_m;  ///< of the magnitude, over all pairs
   double missing_m = 0.0;   ///< mean over all pairs of what is too long
@@ -33,9 +43,19 @@ struct PathLengthError {
 /// closure the map's. Lengths are in the plane: a ride in an elevator has none. A step of the drive
 /// with an end whose truth is not known counts with the map's length.
 ///
-/// Nothing when there are fewer than two nodes, or no node's truth is known.
+/// Nothing when there are fewer than two nodes, no pairs, or no node's truth is known.
 std::optional<PathLengthError> ComparePathLengths(
     const MappedGraph& graph, const std::vector<std::optional<StampedPose>>& truth,
-    const ClosureTolerance& tolerance, const PathLengthOptions& options = {});
+    const std::vector<StampPair>& pairs, const ClosureTolerance& tolerance,
+    const RevisitOptions& revisits = {});
+
+/// The paper's own truth, for logs without a better one: the true way of a pair is the shortest
+/// over the maps in `checked`, which are known to be free of false closures; `graph` may be one of
+/// them. A closure that all of them missed stays hidden.
+///
+/// Nothing when a graph has fewer than two nodes, or there are no pairs or no checked maps.
+std::optional<PathLengthError> CompareWithCheckedMaps(const MappedGraph& graph,
+                                                      const std::vector<MappedGraph>& checked,
+                                                      const std::vector<StampPair>& pairs);
 
 }  // namespace masked_mapper
