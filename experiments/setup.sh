@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian packages that the experiments need and that are missing; nothing else.
+# usage: experiments/setup.sh [--slurm]     --slurm: also what slurm/start.sh needs
+set -euo pipefail
+
+packages=(snakemake python3-matplotlib python3-numpy)
+case "${1:-}" in
+  "") ;;
+  --slurm) packages+=(slurm-wlm munge) ;;
+  -h|--help) sed -n '3,4s/^# //p' "$0"; exit 0 ;;
+  *) echo "setup.sh: unknown option $1 (try --help)" >&2; exit 2 ;;
+esac
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [[ $status == "install ok installed" ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+[[ $(id -u) -eq 0 ]] || as_root=(sudo)
+echo "setup: installing ${#missing[@]} Debian packages: ${missing[*]}"
+"${as_root[@]}" apt-get -q update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends \
+  "${missing[@]}"
