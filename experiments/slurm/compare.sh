@@ -6,10 +6,10 @@ set -euo pipefail
 
 cd "$(dirname "$0")/.."
 sinfo >/dev/null || { echo "compare.sh: no Slurm answers; run start.sh first" >&2; exit 1; }
-rm -rf out/local out/slurm
-targets() { echo "out/$1/sweep/robustness.csv" "out/$1/sweep/fig4.csv" "out/$1/sweep/fig5.csv"; }
-# shellcheck disable=SC2046
-snakemake -q -j"$(nproc)" --config profile=sweep out=out/local -- $(targets local)
-# shellcheck disable=SC2046
-snakemake -q --profile slurm/profile --config profile=sweep out=out/slurm -- $(targets slurm)
-python3 slurm/compare.py out/local/sweep out/slurm/sweep
+targets=(sweep/robustness.csv sweep/fig4.csv sweep/fig5.csv)
+out=../out/compare
+rm -rf "$out"
+snakemake -q -j"$(nproc)" --config profile=sweep out="$out/local" -- "${targets[@]}"
+snakemake -q --profile "$PWD/slurm/profile" --config profile=sweep out="$out/slurm" -- \
+  "${targets[@]}"
+python3 slurm/compare.py "$out/local/sweep" "$out/slurm/sweep"

@@ -411,10 +411,10 @@ def main(snakemake):
     else:
         parts.append("## Real logs\n\nSkipped: their files are missing.\n")
     missed = sum(1 for line in verdicts.lines if "missed" in line[2])
+    readme = os.path.relpath(params.readme, os.path.dirname(os.path.abspath(snakemake.output[0])))
     text = ("# Results\n\n"
-            "Written by the workflow in [`experiments/`](" +
-            ("../experiments/README.md" if params.images != "." else
-             "../../README.md") + ") from its own output; no number is typed by hand. The paper is "
+            f"Written by the workflow in [`experiments/`]({readme}) from "
+            "its own output; no number is typed by hand. The paper is "
             "*The Masked Mapper: Masked Metric Mapping* (Haggenmiller, Kabacinski, Krogius, Olson); "
             "its logs are not public, so its campus is a simulated one of the same size, and shapes "
             "are compared, not digits.\n\n"
