@@ -21,6 +21,7 @@ def draw(rows, masks, path):
         recalls.step(recall, [100.0 * (i + 1) / len(recall) for i in range(len(recall))],
                      where="post", label=mask, **look)
     errors.set_xscale("log")
+    errors.xaxis.set_major_formatter("{x:g}")
     errors.set_xlabel("mean path-length error / m")
     recalls.set_xlabel("true loops closed / %")
     times.set_xlabel("CPU time of a run / s")

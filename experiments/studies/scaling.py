@@ -9,6 +9,7 @@ sys.path.insert(0, os.path.dirname(__file__))
 from runs import STAGES, figure, read_all, save, write_csv  # noqa: E402
 
 LEAST_FITTED_M = 2000.0  # below it the constant cost of any run weighs
+KM_TICKS = [0.5, 1, 2, 5, 10, 20]
 
 
 def exponent(lengths, values):
@@ -56,7 +57,9 @@ def main(snakemake):
     for axes in (times, attempts):
         axes.set_xscale("log")
         axes.set_yscale("log")
+        axes.set_xticks(KM_TICKS)
         axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("")
         axes.yaxis.set_major_formatter("{x:g}")
     for axes in (times, memory, attempts):
         axes.set_xlabel("length of the tour / km")
