@@ -52,12 +52,22 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
   LogSurvey survey;
   std::optional<Pose2> T_odom_before;
   std::optional<double> stamp_before;
+  std::vector<TravelledWay> way;
   std::vector<float> travels;
   std::vector<float> turns;
   std::vector<float> periods;
+  std::optional<Pose2> T_odom_noted;
+  const auto note_way = [&](const OdometryReading& reading) {
+    const double step = T_odom_noted ? Distance(*T_odom_noted, reading.T_odom_robot) : 0.0;
+    way.push_back({reading.stamp, (way.empty() ? 0.0 : way.back().travelled_m) + step});
+    T_odom_noted = reading.T_odom_robot;
+  };
   while (const std::optional<Observation> observation = log->Next()) {
     floors.Observe(*observation);
-    if (std::holds_alternative<OdometryReading>(*observation)) survey.has_odometry = true;
+    if (const auto* reading = std::get_if<OdometryReading>(&*observation)) {
+      survey.has_odometry = true;
+      note_way(*reading);
+    }
     const auto* scan = std::get_if<LaserScan>(&*observation);
     if (scan == nullptr) continue;
     ++survey.scans;
@@ -65,6 +75,7 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
     stamp_before = scan->stamp;
     if (!scan->T_odom_robot) continue;
     survey.has_odometry = true;
+    note_way({scan->stamp, *scan->T_odom_robot});
     if (T_odom_before) {
       const Pose2 step = Between(*T_odom_before, *scan->T_odom_robot);
       const double travel = std::hypot(step.x, step.y);
@@ -84,6 +95,7 @@ LogSurvey SurveyLog(const std::string& path, const Options& options) {
     }
   }
   survey.floors = floors.Finish();
+  NoteTravel(way, survey.floors);
   survey.floor_source = floors.source();
   survey.warnings = floors.warnings();
   survey.median_travel_m = Median(std::move(travels));

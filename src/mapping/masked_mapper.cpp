@@ -3,6 +3,7 @@
 #include "masked_mapper/mapping/masked_mapper.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -97,15 +98,32 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
   if (!in_transit_ && (interval.in_transit || other_floor)) {
     AddNode(stamp, old_floor, nullptr, EdgeKind::kOdometry);
     in_transit_ = true;
-    motion_.EnterTransit();
+    // On stairs the scene changes step by step, and its far walls hold the way along a flight; a
+    // cab's door opens on another floor at once.
+    on_stairs_ = interval.in_transit && interval.travelled_m > options_.nodes.cab_m;
+    if (!on_stairs_) motion_.EnterTransit();
   }
   if (in_transit_ && !interval.in_transit) {
     AddNode(stamp, floor, nullptr, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
     in_transit_ = false;
     last_scan_node_.reset();
     mask_->Restart();
-    motion_.RestartScans();
+    if (!on_stairs_) motion_.RestartScans();
   }
+}
+
+UncertainPose2 MaskedMapper::RideInCab(const UncertainPose2& motion) const {
+  if (options_.motion.source == MotionSource::kOdometry) return motion;
+  UncertainPose2 ride = motion;
+  const auto at_most = [&](double most, double variance) {
+    return std::min(1.0, most / std::sqrt(std::max(variance, 1e-18)));
+  };
+  const double position =
+      at_most(options_.nodes.ride_sigma_m, motion.covariance.topLeftCorner<2, 2>().trace());
+  const double heading = at_most(DegToRad(options_.nodes.ride_sigma_deg), motion.covariance(2, 2));
+  const Eigen::DiagonalMatrix<double, 3> scale(position, position, heading);
+  ride.covariance = scale * motion.covariance * scale;
+  return ride;
 }
 
 NodeId MaskedMapper::AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot,
@@ -122,7 +140,11 @@ NodeId MaskedMapper::AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr p
     node.T_world_robot = graph.nodes().back().T_world_robot * motion_.T_node_robot().mean;
   }
   const NodeId id = graph.AddNode(std::move(node));
-  if (!is_first) graph.AddEdge({id - 1, id, motion_.T_node_robot(), kind});
+  if (!is_first) {
+    UncertainPose2 motion = motion_.T_node_robot();
+    if (kind == EdgeKind::kFloorChange && !on_stairs_) motion = RideInCab(motion);
+    graph.AddEdge({id - 1, id, motion, kind});
+  }
   motion_.StartNode();
   if (has_scan) {
     last_scan_node_ = id;

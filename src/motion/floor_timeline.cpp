@@ -2,6 +2,7 @@
 #include "masked_mapper/motion/floor_timeline.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -12,6 +13,25 @@ const FloorInterval& FloorTimeline::At(double stamp) const {
       intervals.begin() + 1, intervals.end(), stamp,
       [](double value, const FloorInterval& interval) { return value < interval.start; });
   return *(after - 1);
+}
+
+void NoteTravel(const std::vector<TravelledWay>& way, FloorTimeline& timeline) {
+  const auto travelled_by = [&](double stamp) {
+    const auto after = std::upper_bound(
+        way.begin(), way.end(), stamp,
+        [](double value, const TravelledWay& point) { return value < point.stamp; });
+    return after == way.begin() ? 0.0 : (after - 1)->travelled_m;
+  };
+  std::vector<FloorInterval>& intervals = timeline.intervals;
+  for (std::size_t first = 0; first < intervals.size(); ++first) {
+    if (!intervals[first].in_transit) continue;
+    std::size_t end = first + 1;
+    while (end < intervals.size() && intervals[end].in_transit) ++end;
+    const double last_stamp =
+        end < intervals.size() ? intervals[end].start : std::numeric_limits<double>::infinity();
+    const double travelled_m = travelled_by(last_stamp) - travelled_by(intervals[first].start);
+    for (; first < end; ++first) intervals[first].travelled_m = travelled_m;
+  }
 }
 
 std::vector<std::string> FloorNames(const std::vector<FloorLevel>& levels) {

@@ -7,19 +7,52 @@
 namespace masked_mapper {
 
 MotionEstimator::MotionEstimator(const MotionOptions& options)
-    : options_(options), wheels_(options.odometry), scan_odometry_(options.scans) {
+    : options_(options),
+      wheels_(options.odometry),
+      gyro_bias_(options.gyro_bias),
+      scan_odometry_(options.scans),
+      wheel_noise_(options.wheel_noise, options.odometry) {
   assert(options.source != MotionSource::kAuto);
 }
 
-void MotionEstimator::Observe(const OdometryReading& reading) { wheels_.Observe(reading); }
+void MotionEstimator::Observe(const OdometryReading& reading) {
+  wheels_.Observe(reading);
+  gyro_bias_.Observe(reading);
+}
+
+void MotionEstimator::RestartScans() {
+  scan_odometry_.Restart();
+  wheel_noise_.Restart();
+}
+
+void MotionEstimator::EnterTransit() {
+  scan_odometry_.Restart(options_.scans.transit_reach_m);
+  wheel_noise_.Restart();
+}
+
+void MotionEstimator::LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected) {
+  wheel_noise_.Observe(by_wheels, corrected, scan_odometry_.heading_sigma_rad());
+  const WheelScales scales = wheel_noise_.scales();
+  DeadReckoningOptions noise = options_.odometry;
+  noise.sigma_heading_deg_per_sqrt_m *= scales.travel;
+  noise.sigma_heading_deg_per_sqrt_rad *= scales.turn;
+  wheels_.SetOptions(noise);
+}
 
 void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
-  if (scan.T_odom_robot) wheels_.Observe({scan.stamp, *scan.T_odom_robot});
+  if (scan.T_odom_robot) Observe(OdometryReading{scan.stamp, *scan.T_odom_robot});
   const bool has_wheels = wheels_.HasStarted() && options_.source != MotionSource::kScans;
   UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
   wheels_.StartNode();
-  if (options_.source != MotionSource::kOdometry)
+  if (options_.source != MotionSource::kOdometry) {
+    if (has_wheels && last_scan_stamp_) {
+      const double elapsed = scan.stamp - *last_scan_stamp_;
+      step.mean.theta = WrapAngle(step.mean.theta - gyro_bias_.rate() * elapsed);
+    }
+    const Pose2 by_wheels = step.mean;
     step = scan_odometry_.Observe(scan, step, must_match);
+    if (has_wheels) LearnWheelNoise(by_wheels, step.mean);
+  }
   last_step_s_ = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;
   last_scan_stamp_ = scan.stamp;
   last_step_ = step;

@@ -8,14 +8,9 @@
 namespace masked_mapper {
 namespace {
 
-/// Information of (x, y, theta) in the map frame, of a motion whose covariance is in the frame of
-/// its start. A floor keeps motions that the wheels call perfect from outvoting every scan.
-Eigen::Matrix3d PriorInformation(const Pose2& T_map_start, const UncertainPose2& motion) {
-  const double c = std::cos(T_map_start.theta);
-  const double s = std::sin(T_map_start.theta);
-  Eigen::Matrix3d rotation;
-  rotation << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  Eigen::Matrix3d covariance = rotation * motion.covariance * rotation.transpose();
+/// Information of (x, y, theta). A floor keeps motions that the wheels call perfect from outvoting
+/// every scan.
+Eigen::Matrix3d FlooredInverse(Eigen::Matrix3d covariance) {
   covariance.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);
   return covariance.inverse();
 }
@@ -29,6 +24,8 @@ ScanPoints::ConstPtr PointsWithin(const ScanPoints::ConstPtr& points_in_robot, d
   return near;
 }
 
+constexpr double kMapMargin = 1.0;  // m; more than a robot moves from one keyframe to the next
+
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
 
 }  // namespace
@@ -40,6 +37,8 @@ void ScanOdometry::Restart(double reach_m) {
   T_map_keyframe_.reset();
   T_matched_robot_ = UncertainPose2{};
   T_map_matched_ = T_map_robot_;
+  matched_heading_variance_ = 0.0;
+  rest_scans_ = 0;
   lost_ = 0;
 }
 
@@ -82,38 +81,57 @@ void ScanOdometry::AddKeyframe(const ScanPoints& points) {
 
 UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
                                      bool must_match) {
-  const ScanPoints::ConstPtr points = PointsWithin(PointsInRobot(scan), reach_m_);
+  const ScanPoints::ConstPtr all_points = PointsInRobot(scan);
+  const ScanPoints::ConstPtr points = PointsWithin(all_points, reach_m_);
+  // Where the points of a map end, they would hold back a robot that moves on.
+  const ScanPoints::ConstPtr map_points = PointsWithin(all_points, reach_m_ + kMapMargin);
   const Pose2 T_map_last = T_map_robot_;
   UncertainPose2 step = T_last_now;
   if (!map_) {
     T_map_robot_ = T_map_robot_ * T_last_now.mean;
     T_map_matched_ = T_map_robot_;
-    if (!points->empty()) AddKeyframe(*points);
+    if (!map_points->empty()) AddKeyframe(*map_points);
     return step;
   }
   T_matched_robot_ = T_matched_robot_ * T_last_now;
   T_map_robot_ = T_map_matched_ * T_matched_robot_.mean;
+  heading_sigma_rad_ = std::numeric_limits<double>::infinity();
   const double travelled = Distance(T_map_matched_, T_map_robot_);
   const double turned = Turn(T_map_matched_, T_map_robot_);
   // A wheel that says "at rest" is believed; a guess without wheels is not.
   const bool is_sure = T_matched_robot_.covariance.topLeftCorner<2, 2>().trace() <
                        options_.match_distance_m * options_.match_distance_m;
-  if (!must_match && is_sure && travelled < options_.match_distance_m &&
-      turned < DegToRad(options_.match_angle_deg)) {
-    // The next match answers for this step too: its uncertainty is not counted twice.
-    step.covariance.setZero();
-    return step;
+  const bool is_at_rest = is_sure && travelled < options_.match_distance_m &&
+                          turned < DegToRad(options_.match_angle_deg);
+  if (!is_at_rest) rest_scans_ = 0;
+  if (is_at_rest && !must_match) {
+    // Scans of a robot at rest err each on its own: a few more settle what a poor view left open.
+    const bool is_settled = std::sqrt(matched_heading_variance_) < DegToRad(options_.settled_deg);
+    if (is_settled || rest_scans_ >= options_.rest_scans) {
+      // The next match answers for this step too: its uncertainty is not counted twice.
+      step.covariance.setZero();
+      return step;
+    }
+    ++rest_scans_;
   }
-  const Eigen::Matrix3d prior = PriorInformation(T_map_matched_, T_matched_robot_);
+  const Eigen::Matrix3d motion_in_map =
+      (UncertainPose2{T_map_matched_, Eigen::Matrix3d::Zero()} * T_matched_robot_).covariance;
+  // The heading is filtered over scans. The position is not: along a blank corridor its uncertainty
+  // would grow until the little that walls seem to tell of the way overrules the wheels.
+  Eigen::Matrix3d predicted_in_map = motion_in_map;
+  predicted_in_map(2, 2) += matched_heading_variance_;
+  const Eigen::Matrix3d prior = FlooredInverse(predicted_in_map);
   const Alignment aligned = AlignFromSeveralGuesses(*points, T_map_robot_, prior);
   inlier_share_ = aligned.inlier_share;
   if (aligned.inlier_share >= options_.lost_inlier_share) {
+    heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));
+    matched_heading_variance_ = (aligned.information + prior).inverse()(2, 2);
     // Scans against one map err alike: a short step is worth its share of an alignment's
     // covariance, and all of it only over the way on which the map itself has become another.
     const double share = std::min(1.0, travelled / options_.decorrelation_distance_m +
                                            turned / DegToRad(options_.decorrelation_angle_deg));
     const Eigen::Matrix3d covariance_in_map =
-        (aligned.information / std::max(share, 1e-3) + prior).inverse();
+        (aligned.information / std::max(share, 1e-3) + FlooredInverse(motion_in_map)).inverse();
     T_map_robot_ = aligned.T_map_robot;
     last_step_ = Between(T_map_matched_, T_map_robot_);
     const double c = std::cos(T_map_last.theta);
@@ -125,21 +143,26 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     lost_ = 0;
   } else {
     step.covariance = T_matched_robot_.covariance;
+    matched_heading_variance_ = predicted_in_map(2, 2);
   }
   if (aligned.inlier_share < options_.lost_inlier_share && ++lost_ >= 5) {
     // Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
     map_.reset();
     next_map_.reset();
+    matched_heading_variance_ = 0.0;
     lost_ = 0;
-    if (!points->empty()) AddKeyframe(*points);
+    if (!map_points->empty()) AddKeyframe(*map_points);
   }
   T_map_matched_ = T_map_robot_;
   T_matched_robot_ = UncertainPose2{};
-  if (lost_ == 0 &&
-      (!T_map_keyframe_ ||
-       Distance(*T_map_keyframe_, T_map_robot_) >= options_.keyframe_distance_m ||
-       Turn(*T_map_keyframe_, T_map_robot_) >= DegToRad(options_.keyframe_angle_deg))) {
-    AddKeyframe(*points);
+  if (lost_ != 0) return step;
+  if (!T_map_keyframe_ ||
+      Distance(*T_map_keyframe_, T_map_robot_) >= options_.keyframe_distance_m ||
+      Turn(*T_map_keyframe_, T_map_robot_) >= DegToRad(options_.keyframe_angle_deg)) {
+    AddKeyframe(*map_points);
+  } else if (rest_scans_ > 0 && map_->scans() < static_cast<std::size_t>(options_.rest_scans)) {
+    // A young map is as noisy as its few scans, and all that follows is held against it.
+    map_->Add(*map_points, T_map_robot_);
   }
   return step;
 }

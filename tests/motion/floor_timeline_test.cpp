@@ -42,5 +42,27 @@ TEST(FloorNames, LabelsWinAndAreNotTakenTwice) {
   EXPECT_EQ(FloorNames(levels), (std::vector<std::string>{"1", "1_", "2"}));
 }
 
+TEST(NoteTravel, GivesTheWholeWayToEveryIntervalOfATransit) {
+  FloorTimeline timeline;
+  timeline.levels.resize(2);
+  timeline.intervals = {
+      {-1e300, 0, false}, {10.0, 0, true}, {15.0, 1, true}, {20.0, 1, false}, {30.0, 1, true}};
+  std::vector<TravelledWay> way;
+  for (int i = 0; i <= 40; ++i) way.push_back({1.0 * i, 0.5 * i});
+  NoteTravel(way, timeline);
+  EXPECT_DOUBLE_EQ(timeline.intervals[0].travelled_m, 0.0);
+  EXPECT_DOUBLE_EQ(timeline.intervals[1].travelled_m, 5.0);
+  EXPECT_DOUBLE_EQ(timeline.intervals[2].travelled_m, 5.0);
+  EXPECT_DOUBLE_EQ(timeline.intervals[3].travelled_m, 0.0);
+  EXPECT_DOUBLE_EQ(timeline.intervals[4].travelled_m, 5.0) << "to the end of the log";
+}
+
+TEST(NoteTravel, WithoutWheelsNothingTravels) {
+  FloorTimeline timeline;
+  timeline.intervals = {{0.0, 0, true}};
+  NoteTravel({}, timeline);
+  EXPECT_DOUBLE_EQ(timeline.intervals[0].travelled_m, 0.0);
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -37,6 +37,8 @@ class MaskedMapper {
   void ObserveScan(const LaserScan& scan);
   void ChangeFloor(const FloorInterval& interval, double stamp);
   NodeId AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
+  /// The cab's walls ride along: scans against them err once, not with every turn in it.
+  UncertainPose2 RideInCab(const UncertainPose2& motion) const;
   void CloseLoops(NodeId new_node);
   std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
   bool RefineMatch(ClosureAttempt& attempt);
@@ -56,6 +58,7 @@ class MaskedMapper {
 
   std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered
   bool in_transit_ = false;
+  bool on_stairs_ = false;  ///< the transit that runs, or the last
   std::vector<std::size_t> attempt_of_hypothesis_;
   std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
   double travelled_since_kept_m_ = 0.0;

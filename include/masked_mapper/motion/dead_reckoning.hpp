@@ -30,6 +30,8 @@ class DeadReckoning {
 
   /// Readings in order of stamps. The first defines the origin: the path starts at the identity.
   void Observe(const OdometryReading& reading);
+  /// How uncertain steps are from now on.
+  void SetOptions(const DeadReckoningOptions& options) { options_ = options; }
   /// A node was made here: motion and uncertainty are counted from now on.
   void StartNode();
 

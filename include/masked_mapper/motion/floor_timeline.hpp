@@ -23,6 +23,9 @@ struct FloorInterval {
   double start = 0.0;     ///< s; the first interval counts from the beginning of time
   std::size_t level = 0;  ///< in transit: the level left, from the middle on the one reached
   bool in_transit = false;
+  /// By wheels, of the whole way between two floors (the same for each of its intervals): a cab
+  /// goes nowhere, stairs do. Known to none of the sources; NoteTravel() fills it in.
+  double travelled_m = 0.0;
 };
 
 struct FloorTimeline {
@@ -31,6 +34,15 @@ struct FloorTimeline {
 
   const FloorInterval& At(double stamp) const;
 };
+
+/// The way of wheels up to a stamp.
+struct TravelledWay {
+  double stamp = 0.0;
+  double travelled_m = 0.0;  ///< since the start of the log
+};
+
+/// Sets `travelled_m` of all intervals in transit; `way` in order of stamps.
+void NoteTravel(const std::vector<TravelledWay>& way, FloorTimeline& timeline);
 
 /// What each level is called: its label, else its place in the order of elevations, where the first
 /// level is `0`. Names differ: an underscore is added where a label took the place already.

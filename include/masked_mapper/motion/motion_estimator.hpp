@@ -6,7 +6,9 @@
 #include <string>
 
 #include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/motion/gyro_bias.hpp"
 #include "masked_mapper/motion/scan_odometry.hpp"
+#include "masked_mapper/motion/wheel_noise.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
@@ -28,6 +30,8 @@ struct MotionOptions {
   MotionSource source = MotionSource::kAuto;  ///< kAuto is settled before a drive begins
   DeadReckoningOptions odometry;
   ScanOdometryOptions scans;
+  WheelNoiseOptions wheel_noise;
+  GyroBiasOptions gyro_bias;
   WheellessOptions wheelless;
 };
 
@@ -42,9 +46,9 @@ class MotionEstimator {
   /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
   void StartNode() { T_node_robot_ = UncertainPose2{}; }
   /// The scene is another one (a floor was changed): the next scan is aligned to none before it.
-  void RestartScans() { scan_odometry_.Restart(); }
+  void RestartScans();
   /// The robot is in a cab or on stairs: only what is near stays the same when a door opens.
-  void EnterTransit() { scan_odometry_.Restart(options_.scans.transit_reach_m); }
+  void EnterTransit();
 
   /// Pose at the scan observed last, along the path; frame `odom` is the robot's first pose.
   const Pose2& T_odom_robot() const { return T_odom_robot_; }
@@ -53,10 +57,13 @@ class MotionEstimator {
 
  private:
   UncertainPose2 StepWithoutWheels(double stamp) const;
+  void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);
 
   MotionOptions options_;
   DeadReckoning wheels_;  ///< since the scan before
+  GyroBias gyro_bias_;
   ScanOdometry scan_odometry_;
+  WheelNoise wheel_noise_;
   std::optional<double> last_scan_stamp_;
   UncertainPose2 last_step_;
   double last_step_s_ = 0.0;

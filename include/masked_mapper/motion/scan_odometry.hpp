@@ -18,14 +18,16 @@ struct ScanOdometryOptions {
   double match_distance_m = 0.04;     ///< travel below which a scan is not matched: wheels suffice
   double match_angle_deg = 0.2;       ///< and turn
   double keyframe_distance_m = 0.15;  ///< travel from one scan in the local map to the next
-  double keyframe_angle_deg = 5.0;    ///< or turn
+  double keyframe_angle_deg = 12.0;   ///< or turn
   int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
   double decorrelation_distance_m = 1.0;  ///< travel over which alignments err independently
   double decorrelation_angle_deg = 30.0;  ///< or turn
   double transit_reach_m = 2.5;  ///< in transit only walls this near: beyond the door floors differ
   double min_inlier_share = 0.5;     ///< below it other guesses are tried
   double repeat_difference_m = 0.1;  ///< between wheels and the step before, to try both
-  double lost_inlier_share = 0.25;   ///< below it after all guesses the scan is not believed
+  double settled_deg = 0.03;  ///< sigma of the heading below which a robot at rest is not matched
+  int rest_scans = 15;        ///< nor after as many scans at rest
+  double lost_inlier_share = 0.25;  ///< below it after all guesses the scan is not believed
 };
 
 class ScanOdometry {
@@ -43,6 +45,10 @@ class ScanOdometry {
   /// than `reach_m` from the robot are not looked at from now on.
   void Restart(double reach_m = std::numeric_limits<double>::infinity());
 
+  /// Sigma of the heading of the last observed scan against the local map by its points alone,
+  /// radians; infinite if it was not matched.
+  double heading_sigma_rad() const { return heading_sigma_rad_; }
+
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
 
@@ -56,9 +62,12 @@ class ScanOdometry {
   std::optional<Pose2> T_map_keyframe_;  ///< of the scan added last
   UncertainPose2 T_matched_robot_;       ///< by wheels since the scan matched last
   Pose2 T_map_matched_;
-  Pose2 last_step_;                   ///< from the match before last to the last
-  std::optional<LocalMap> map_;       ///< matched against
-  std::optional<LocalMap> next_map_;  ///< grows until it is large enough to take over
+  Pose2 last_step_;                        ///< from the match before last to the last
+  std::optional<LocalMap> map_;            ///< matched against
+  std::optional<LocalMap> next_map_;       ///< grows until it is large enough to take over
+  double matched_heading_variance_ = 0.0;  ///< of T_map_matched_, rad^2
+  int rest_scans_ = 0;                     ///< matched since the robot came to rest
+  double heading_sigma_rad_ = std::numeric_limits<double>::infinity();
   double inlier_share_ = 1.0;
   double reach_m_ = std::numeric_limits<double>::infinity();
   int lost_ = 0;  ///< scans in a row that were not believed

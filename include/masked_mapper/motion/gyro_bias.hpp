@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The drift of a gyro in odometry's heading, learnt while the wheels stand still: what turns then
+// is not the robot. Ours; a robot whose heading comes from its wheels alone shows none.
+#pragma once
+
+#include <optional>
+
+#include "masked_mapper/motion/dead_reckoning.hpp"
+
+namespace masked_mapper {
+
+struct GyroBiasOptions {
+  double rest_m = 1e-4;              ///< travel between two readings, below which wheels stand
+  double most_deg_per_s = 0.05;      ///< turning faster than this is a robot that turns
+  double first_seconds = 10.0;       ///< weight of no bias before anything was seen
+  double remembered_seconds = 60.0;  ///< of rest, after which what was seen fades
+};
+
+class GyroBias {
+ public:
+  explicit GyroBias(const GyroBiasOptions& options) : options_(options) {}
+
+  /// Readings in order of stamps.
+  void Observe(const OdometryReading& reading);
+
+  /// What the heading drifts, radians per second.
+  double rate() const { return rate_; }
+
+ private:
+  GyroBiasOptions options_;
+  std::optional<OdometryReading> last_;
+  double rate_ = 0.0;
+  double seconds_ = 0.0;  ///< of rest that the rate is a mean of
+};
+
+}  // namespace masked_mapper
