@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figure 2: one floor of the campus before and after closures."""
+import json
 import os
 import sys
 
@@ -58,7 +59,6 @@ def closures_of(folder, nodes):
 
 
 def elevation_of(folder, floor):
-    import json
     with open(os.path.join(folder, "summary.json")) as file:
         return next(entry["elevation_m"] for entry in json.load(file)["floors"]
                     if entry["label"] == floor)
@@ -66,9 +66,9 @@ def elevation_of(folder, floor):
 
 def main(snakemake):
     floor = snakemake.params.floor
-    titles = {"before": "before: odometry alone, no closures",
-              "after": "after: openings, validated closures"}
-    drawing, panels = figure(rows=2, width=6.4, height=7.6)
+    titles = {"before": "before: odometry alone",
+              "after": "after: openings and closures"}
+    drawing, panels = figure(columns=2, width=7.2, height=8.2, sharex=True, sharey=True)
     table = []
     for axes, when in zip(panels, titles):
         folder = snakemake.input[when]
@@ -88,14 +88,17 @@ def main(snakemake):
                       markeredgewidth=0.7, linestyle="none", label="validated closures")
         axes.set_title(titles[when], fontsize=10)
         axes.set_xlabel("x / m")
-        axes.set_ylabel("y / m")
-        axes.legend(fontsize=8, loc="upper left")
+        axes.set_aspect("equal")
         run = read(snakemake.input[when + "_run"])
         table.append({"map": when, "mask": run["mask"], "motion": run["motion"],
                       "nodes": run["nodes"], "floor_nodes": int(here.sum()),
                       "floor_closures": len(closures), "path_error_m": run["path_error_m"],
                       "trajectory_mean_m": run["trajectory_mean_m"],
                       "width_m": extent[1] - extent[0], "height_m": extent[3] - extent[2]})
+    panels[0].set_ylabel("y / m")
+    handles, labels = panels[1].get_legend_handles_labels()
+    drawing.legend(handles, labels, loc="upper center", ncol=2,
+                   bbox_to_anchor=(0.5, 0.0))
     save(drawing, snakemake.output.svg)
     write_csv(snakemake.output.csv, table)
 

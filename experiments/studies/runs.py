@@ -121,6 +121,7 @@ def figure(columns=1, rows=1, width=6.4, height=4.0, **options):
 
 def save(drawing, path):
     """As SVG, and beside it as PNG for a quick look."""
-    drawing.savefig(os.path.splitext(path)[0] + ".png", dpi=120)
-    drawing.savefig(path, metadata={"Date": None, "Creator": "masked_mapper experiments"})
+    drawing.savefig(os.path.splitext(path)[0] + ".png", dpi=120, bbox_inches="tight")
+    drawing.savefig(path, bbox_inches="tight",
+                    metadata={"Date": None, "Creator": "masked_mapper experiments"})
     plt.close(drawing)

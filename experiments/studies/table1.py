@@ -36,7 +36,7 @@ def row_of(mask, motion, runs, timed):
 
 
 def draw(rows, masks, motion, path):
-    drawing, (counts, seconds) = figure(columns=2, width=9.6, height=3.8)
+    drawing, (counts, seconds) = figure(columns=2, width=10.5, height=3.8)
     of_motion = {row["mask"]: row for row in rows if row["motion"] == motion}
     shown = [mask for mask in masks if mask != "never"]
     fills = [dict(color="#404040"), dict(color="#909090"), dict(color="#d8d8d8")]
@@ -68,7 +68,7 @@ def draw(rows, masks, motion, path):
     seconds.set_xticks(range(len(bars)), [f"{mask}, {source}" for mask, source in bars],
                        rotation=40, ha="right", fontsize=8)
     seconds.set_ylabel("seconds on two threads / s")
-    seconds.legend(fontsize=8)
+    seconds.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     save(drawing, path)
 
 
