@@ -9,7 +9,7 @@ sinfo >/dev/null || { echo "compare.sh: no Slurm answers; run start.sh first" >&
 targets=(sweep/robustness.csv sweep/fig4.csv sweep/fig5.csv)
 out=../out/compare
 rm -rf "$out"
-snakemake -q -j"$(nproc)" --config profile=sweep out="$out/local" -- "${targets[@]}"
-snakemake -q --profile "$PWD/slurm/profile" --config profile=sweep out="$out/slurm" -- \
-  "${targets[@]}"
+snakemake "${targets[@]}" -j"$(nproc)" --quiet --config profile=sweep out="$out/local"
+snakemake "${targets[@]}" --profile "$PWD/slurm/profile" --quiet \
+  --config profile=sweep out="$out/slurm"
 python3 slurm/compare.py "$out/local/sweep" "$out/slurm/sweep"

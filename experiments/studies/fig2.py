@@ -68,7 +68,7 @@ def main(snakemake):
     floor = snakemake.params.floor
     titles = {"before": "before: odometry alone",
               "after": "after: openings and closures"}
-    drawing, panels = figure(columns=2, width=7.2, height=8.2, sharex=True, sharey=True)
+    drawing, panels = figure(columns=2, width=7.2, height=6.6, sharex=True, sharey=True)
     table = []
     for axes, when in zip(panels, titles):
         folder = snakemake.input[when]
@@ -98,7 +98,7 @@ def main(snakemake):
     panels[0].set_ylabel("y / m")
     handles, labels = panels[1].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="upper center", ncol=2,
-                   bbox_to_anchor=(0.5, 0.0))
+                   bbox_to_anchor=(0.5, 0.03))
     save(drawing, snakemake.output.svg)
     write_csv(snakemake.output.csv, table)
 
