@@ -51,6 +51,7 @@ def draw(rows, masks, motion, path):
         counts.bar([x for x, _ in theirs], [y for _, y in theirs], width,
                    label=f"{name}, paper", edgecolor="black", linewidth=0.6, hatch="////", **fill)
     counts.set_xticks(range(len(shown)), shown)
+    counts.set_xlim(-0.6, len(shown) - 0.4)
     counts.set_ylabel("pairs of scans")
     counts.legend(fontsize=8)
 
