@@ -54,12 +54,16 @@ std::string LastPartOfFrame(const std::string& frame) {
   return slash == std::string::npos ? frame : frame.substr(slash + 1);
 }
 
+// Quaternion and matrix leave rounding errors in an angle that was written with a few digits; taken
+// off again, a bag and a text log of one drive say the same to the last bit.
 PlanarMount SeenFromAbove(const Eigen::Isometry3d& T_robot_laser) {
   const Eigen::Matrix3d rotation = T_robot_laser.linear();
   PlanarMount mount;
   mount.upside_down = rotation(2, 2) < 0.0;
+  constexpr double kStepsPerRadian = 1e12;
+  const double yaw = std::atan2(rotation(1, 0), rotation(0, 0));
   mount.T_robot_laser = {T_robot_laser.translation().x(), T_robot_laser.translation().y(),
-                         std::atan2(rotation(1, 0), rotation(0, 0))};
+                         std::round(yaw * kStepsPerRadian) / kStepsPerRadian};
   return mount;
 }
 

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "masked_mapper/geometry/angle.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -110,13 +112,21 @@ bool Transform(FieldReader* fields, Eigen::Isometry3d* transform) {
   return true;
 }
 
+/// Scanners are built in degrees, and a message holds single precision. Where a short number of
+/// degrees has the same bits, it was meant: a bag and a text log then give the same beams.
+double AngleAsMeant(float angle) {
+  constexpr double kStepsPerDegree = 1e4;
+  const double meant = DegToRad(std::round(RadToDeg(angle) * kStepsPerDegree) / kStepsPerDegree);
+  return static_cast<float>(meant) == angle ? meant : static_cast<double>(angle);
+}
+
 /// The fields between the header and the ranges.
 RosLaserScan ScanBeforeRanges(FieldReader* fields) {
   RosLaserScan scan;
   scan.header = Header(fields);
-  scan.angle_min = fields->Number<float>();
+  scan.angle_min = AngleAsMeant(fields->Number<float>());
   fields->Number<float>();  // angle_max: the count and the increment say it
-  scan.angle_increment = fields->Number<float>();
+  scan.angle_increment = AngleAsMeant(fields->Number<float>());
   fields->Skip(2 * sizeof(float));  // time_increment, scan_time
   scan.range_min = fields->Number<float>();
   scan.range_max = fields->Number<float>();

@@ -9,12 +9,13 @@ namespace masked_mapper {
 UncertainPose2 OdometryStep(const OdometryReading& from, const OdometryReading& to,
                             const DeadReckoningOptions& options) {
   UncertainPose2 T_from_to;
+  // Wheels at rest: nothing slips, and a gyro is held by standing still. Asked of the readings
+  // themselves, since far from the origin rounding alone makes a step of equal poses.
+  if (from.T_odom_robot.AsVector() == to.T_odom_robot.AsVector()) return T_from_to;
   T_from_to.mean = Between(from.T_odom_robot, to.T_odom_robot);
   const double travelled = std::hypot(T_from_to.mean.x, T_from_to.mean.y);
   const double turned = std::abs(T_from_to.mean.theta);
   const double elapsed = std::max(0.0, to.stamp - from.stamp);
-  // Wheels at rest: nothing slips, and a gyro is held by standing still.
-  if (travelled == 0.0 && turned == 0.0) return T_from_to;
   const auto square = [](double sigma) { return sigma * sigma; };
   const double position = square(options.sigma_position_per_sqrt_m) * travelled +
                           square(options.sigma_position_per_step);

@@ -55,5 +55,13 @@ TEST(SeenFromAboveTest, AnUpsideDownScannerTurnsTheOtherWay) {
   }
 }
 
+TEST(SeenFromAboveTest, AnAngleOfAFewDigitsComesBackToTheLastBit) {
+  for (int i = -314; i <= 314; ++i) {
+    const double yaw = static_cast<double>(i) / 100.0;
+    const Eigen::Isometry3d mount(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+    EXPECT_EQ(SeenFromAbove(mount).T_robot_laser.theta, yaw);
+  }
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "log/bag_bytes.hpp"
+#include "masked_mapper/geometry/angle.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -31,6 +32,24 @@ TEST(RosMessagesTest, ReadsALaserScan) {
   EXPECT_EQ(scan->ranges, (std::vector<float>{1, 2, 3, 4, 5}));
   EXPECT_EQ(scan->range_max, 30.0);
   EXPECT_NEAR(scan->angle_increment, 0.4, 1e-6);
+}
+
+TEST(RosMessagesTest, AnglesAreTheDegreesThatWereMeant) {
+  const auto angles = [](float first, float step) {
+    std::string scan = LaserScanBytes(9, 5);
+    const std::size_t at = RosHeaderBytes(9, "/laser").size();
+    scan.replace(at, 4, Raw(first));
+    scan.replace(at + 8, 4, Raw(step));
+    const auto parsed = On(ParseLaserScan, scan);
+    EXPECT_TRUE(parsed);
+    return std::pair{parsed->angle_min, parsed->angle_increment};
+  };
+  const auto meant = angles(static_cast<float>(DegToRad(-90.0)), static_cast<float>(DegToRad(0.5)));
+  EXPECT_EQ(meant.first, DegToRad(-90.0));
+  EXPECT_EQ(meant.second, DegToRad(0.5));
+  const auto odd = angles(-1.2345678F, 0.0061234567F);
+  EXPECT_EQ(odd.first, static_cast<double>(-1.2345678F));
+  EXPECT_EQ(odd.second, static_cast<double>(0.0061234567F));
 }
 
 TEST(RosMessagesTest, ACutMessageIsNone) {
