@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "mapping/ring_drive.hpp"
@@ -31,6 +32,52 @@ TEST(MapLog, ALogBecomesAMapWithAPoseForEveryScan) {
   EXPECT_LT(worst, 0.3) << "m";
   EXPECT_THROW(MapLog(path, "openingz", {}, silent), InputError);
   EXPECT_THROW(MapLog(path + ".missing", "openings", {}, silent), InputError);
+}
+
+TEST(MapLog, ABagOfAFullCircleScannerIsMappedRight) {
+  const RingDrive drive(1.25, 0.2, 1, 360, 359.0);
+  ASSERT_TRUE(drive.scans.front().IsFullCircle());
+  const std::string path = (std::filesystem::path(testing::TempDir()) / "full_circle").string();
+  LogWriter writer(path + ".log");
+  for (const LaserScan& scan : drive.scans) writer.Write(scan);
+  writer.Close();
+  const std::string command = "/usr/bin/python3 " MASKED_MAPPER_SOURCE_DIR
+                              "/tests/mapping/write_bag_of_log.py " +
+                              path + ".log " + path + ".bag >/dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "python3-rosbag is not installed";
+  ProgressSink silent;
+  const MappingResult map = MapLog(path + ".bag", "openings", {}, silent);
+  ASSERT_EQ(map.trajectory.size(), drive.scans.size());
+  EXPECT_TRUE(map.kept_scans.front().scan.IsFullCircle());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < drive.truth.size(); ++i) {
+    worst = std::max(worst, Distance(drive.truth[i], map.trajectory[i].T_world_robot));
+  }
+  EXPECT_LT(worst, 0.3) << "m";
+}
+
+TEST(MapLog, ABagAndATextLogOfOneDriveGiveOneMap) {
+  const std::string shared = MASKED_MAPPER_REAL_LOGS;
+  for (const char* file : {"/data/mit-csail.clf.gz", "/bags/mit-csail.bag"}) {
+    if (!std::filesystem::exists(shared + file)) GTEST_SKIP() << file << " is not there";
+  }
+  ProgressSink silent;
+  const MappingResult text = MapLog(shared + "/data/mit-csail.clf.gz", "openings", {}, silent);
+  const MappingResult bag = MapLog(shared + "/bags/mit-csail.bag", "openings", {}, silent);
+  // Single precision of the bag's angles and the rounding of its quaternions are taken off: nothing
+  // is left of them.
+  ASSERT_EQ(text.trajectory.size(), 1988U);
+  ASSERT_EQ(bag.trajectory.size(), text.trajectory.size());
+  for (std::size_t i = 0; i < text.trajectory.size(); ++i) {
+    EXPECT_EQ(bag.trajectory[i].stamp, text.trajectory[i].stamp);
+    ASSERT_EQ(bag.trajectory[i].T_world_robot.AsVector(),
+              text.trajectory[i].T_world_robot.AsVector())
+        << "scan " << i;
+  }
+  ASSERT_EQ(bag.attempts.size(), text.attempts.size());
+  for (std::size_t i = 0; i < text.attempts.size(); ++i) {
+    EXPECT_EQ(bag.attempts[i].state, text.attempts[i].state) << "attempt " << i;
+  }
 }
 
 TEST(MapLog, AcesIsMappedAsWellAsItsRelationsCanTell) {

@@ -17,7 +17,8 @@ struct RingDrive {
   std::vector<Pose2> truth;  ///< T_start_robot, one for each scan
 
   /// `rounds` of a 24 m by 16 m ring; the wheels turn `drift_deg_per_m` too far.
-  RingDrive(double rounds, double drift_deg_per_m, unsigned seed = 1) {
+  RingDrive(double rounds, double drift_deg_per_m, unsigned seed = 1, std::size_t beams = 181,
+            double field_of_view_deg = 270.0) {
     scene.AddBox(0.0, 0.0, 26.0, 18.0);
     scene.AddBox(2.0, 2.0, 24.0, 16.0);
     // Niches, no two alike, so that places can be told apart.
@@ -42,7 +43,7 @@ struct RingDrive {
       wheels.x *= 1.01;
       wheels.theta += DegToRad(drift_deg_per_m) * way;
       T_odom_robot = T_odom_robot * wheels;
-      LaserScan scan = scene.Scan(T_world_robot, 181, 270.0, &random, 0.01);
+      LaserScan scan = scene.Scan(T_world_robot, beams, field_of_view_deg, &random, 0.01);
       scan.stamp = stamp += 0.25;
       scan.T_odom_robot = T_odom_robot;
       scans.push_back(scan);
