@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares two folders of results file by file; seconds and memory may differ, nothing else.
 
-usage: compare.py FOLDER FOLDER     exit code 1 when they differ
+usage: compare.py FOLDER FOLDER SUMMARY.json     exit code 1 when they differ
 """
 import csv
 import json
@@ -38,6 +38,8 @@ def main():
                          content(one / name) == content(other / name))]
     for name in differing:
         print(f"differs: {name}")
+    with open(sys.argv[3], "w") as file:
+        json.dump({"files": len(names), "same": len(names) - len(differing)}, file)
     print(f"{len(names) - len(differing)} of {len(names)} files are the same")
     sys.exit(1 if differing or not names else 0)
 

@@ -12,4 +12,4 @@ rm -rf "$out"
 snakemake "${targets[@]}" -j"$(nproc)" --quiet --config profile=sweep out="$out/local"
 snakemake "${targets[@]}" --profile "$PWD/slurm/profile" --quiet \
   --config profile=sweep out="$out/slurm"
-python3 slurm/compare.py "$out/local/sweep" "$out/slurm/sweep"
+python3 slurm/compare.py "$out/local/sweep" "$out/slurm/sweep" "$out/summary.json"

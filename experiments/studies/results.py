@@ -442,6 +442,13 @@ def main(snakemake):
     if own:
         parts.append(own_masks_text(data["table1"], data.get("real_logs", []), params.motion, own,
                                     verdicts))
+    if params.slurm:
+        verdicts.add("The small sweep on Slurm: the same files as the local run",
+                     f"{params.slurm['same']} of {params.slurm['files']} files",
+                     params.slurm["same"] == params.slurm["files"])
+    else:
+        verdicts.add("The small sweep on Slurm: the same files as the local run",
+                     "experiments/slurm/compare.sh was not run", None)
     missed = sum(1 for line in verdicts.lines if "missed" in line[2])
     readme = os.path.relpath(params.readme, os.path.dirname(os.path.abspath(snakemake.output[0])))
     text = ("# Results\n\n"
