@@ -21,7 +21,7 @@ void CatchInterrupts() {
 }
 
 void ThrowIfInterrupted() {
-  if (interrupted != 0) throw Interrupted();
+  if (interrupted != 0) throw Interrupted("interrupted; nothing was written");
 }
 
 }  // namespace masked_mapper

@@ -2,12 +2,15 @@
 // Ctrl-C and a polite kill: the work ends at its next step, and what was half-written is removed.
 #pragma once
 
-#include <exception>
+#include <stdexcept>
 
 namespace masked_mapper {
 
-/// Thrown from where the work looks whether it was interrupted.
-class Interrupted : public std::exception {};
+/// Thrown from where the work looks whether it was interrupted. Says what became of the work.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// From now on SIGINT and SIGTERM are remembered; a second one ends the program at once.
 void CatchInterrupts();

@@ -118,8 +118,6 @@ int main(int argc, char** argv) {
     return masked_mapper::Main(argc, argv);
   } catch (const masked_mapper::InputError& error) {
     return Fail(masked_mapper::kInputAtFault, error.what());
-  } catch (const masked_mapper::Interrupted&) {
-    return Fail(masked_mapper::kWorkFailed, "interrupted; nothing was written");
   } catch (const std::bad_alloc&) {
     return Fail(masked_mapper::kWorkFailed, "out of memory");
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/checkpoint_file.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/configuration.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
@@ -33,17 +36,59 @@ struct MapArguments {
   OptionFlags options;
   std::string floors;
   std::string threads;
+  double checkpoint_s = 1.0;
   bool resume = false;
   bool force = false;
   bool quiet = false;
 };
 
-/// What stands in the way of writing to OUT. There is nothing yet to resume from but a start.
+/// What stands in the way of writing to OUT.
 ExistingFolder HowToTreat(const MapArguments& arguments) {
   const bool is_empty =
       std::filesystem::is_directory(arguments.out) && std::filesystem::is_empty(arguments.out);
   if (arguments.resume && is_empty) return ExistingFolder::kReplace;
   return arguments.force ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
+}
+
+/// Whether OUT holds the map that is asked for already. Throws InputError when it holds another.
+bool IsFinished(const MapArguments& arguments, const MapOrigin& origin) {
+  const std::filesystem::path file = std::filesystem::path(arguments.out) / "building.mmap";
+  if (arguments.force || !std::filesystem::exists(file)) return false;
+  const std::string difference = DifferenceFrom(ReadMapFile(file).origin, origin);
+  if (difference.empty()) return true;
+  throw InputError(arguments.out + " holds a finished map that was made otherwise: " + difference +
+                   "; --force replaces it");
+}
+
+/// Maps and writes all of OUT.
+Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, ExistingFolder existing,
+                CheckpointFile& checkpoints, ProgressBar& progress) {
+  const Options& options = origin.options;
+  MappingResult result = MapLog(origin.log, origin.mask, options, progress, &checkpoints);
+  progress.Stage("writing");
+  OutputFolder folder(arguments.out, existing);
+  double map_file_seconds = 0.0;
+  {
+    const StageTimer timer(map_file_seconds);
+    WriteMapFile(origin, result, folder.path() / "building.mmap");
+  }
+  result.seconds.export_ += map_file_seconds;
+  result.seconds.total += map_file_seconds;
+  ExportOptions export_options{options.grid, options.octree};
+  export_options.grid.threads = options.threads;
+  Summary summary = WriteMap(result, {origin.log, origin.mask, OptionValues(options)},
+                             export_options, folder.path());
+  ThrowIfInterrupted();
+  folder.Commit();
+  progress.Finish();
+  return summary;
+}
+
+/// What to add to the word of a run that ended early.
+std::string HowToGoOn(const CheckpointFile& checkpoints) {
+  const auto percent = static_cast<int>(100.0 * checkpoints.progress());
+  return "; " + std::to_string(percent) +
+         " % of the log is kept: the same command with --resume goes on";
 }
 
 int RunMap(const MapArguments& arguments) {
@@ -61,28 +106,35 @@ int RunMap(const MapArguments& arguments) {
   }
   // Before the work: an hour of mapping must not end in "exists already".
   const ExistingFolder existing = HowToTreat(arguments);
+  const MapOrigin origin{arguments.logs.front(), arguments.mask, options};
+  CheckpointFile checkpoints(arguments.out, origin, arguments.checkpoint_s, arguments.resume);
+  if (arguments.resume && IsFinished(arguments, origin)) {
+    checkpoints.Remove();  // the program may have ended between the two
+    if (!arguments.quiet) std::cout << "map: " << arguments.out << " is finished already\n";
+    return 0;
+  }
   CheckOutputFolder(arguments.out, existing);
+
+  if (!arguments.resume && !arguments.force && CheckpointFile::Exists(arguments.out)) {
+    throw InputError("an unfinished map of " + arguments.out +
+                     " is there: --resume goes on with it, --force starts afresh");
+  }
 
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
-  const std::string& log = arguments.logs.front();
-  MappingResult result = MapLog(log, arguments.mask, options, progress);
-  progress.Stage("writing");
-  OutputFolder folder(arguments.out, existing);
-  double map_file_seconds = 0.0;
-  {
-    const StageTimer timer(map_file_seconds);
-    WriteMapFile({log, arguments.mask, options}, result, folder.path() / "building.mmap");
+  Summary summary;
+  try {
+    summary = MakeMap(arguments, origin, existing, checkpoints, progress);
+  } catch (const InputError&) {
+    throw;
+  } catch (const Interrupted&) {
+    if (!checkpoints.HasCheckpoint()) throw;
+    throw Interrupted("interrupted" + HowToGoOn(checkpoints));
+  } catch (const std::runtime_error& error) {
+    if (!checkpoints.HasCheckpoint()) throw;
+    throw std::runtime_error(error.what() + HowToGoOn(checkpoints));
   }
-  result.seconds.export_ += map_file_seconds;
-  result.seconds.total += map_file_seconds;
-  ExportOptions export_options{options.grid, options.octree};
-  export_options.grid.threads = options.threads;
-  const Summary summary =
-      WriteMap(result, {log, arguments.mask, OptionValues(options)}, export_options, folder.path());
-  ThrowIfInterrupted();
-  folder.Commit();
-  progress.Finish();
+  checkpoints.Remove();
   if (!arguments.quiet) std::cout << ClosingTable(summary) << "map: " << arguments.out << "\n";
   return 0;
 }
@@ -124,7 +176,13 @@ void AddMapCommand(CLI::App& program, Run& run) {
                    "threads to use, 0: all; the map is the same with any number")
       ->type_name("N");
   command->add_flag("--resume", arguments->resume,
-                    "go on with an unfinished map in OUT; a missing or empty OUT starts afresh");
+                    "go on with an unfinished map of OUT; without one, start afresh");
+  command
+      ->add_option("--checkpoint", arguments->checkpoint_s,
+                   "seconds from which on what is done is kept, and between; 0: never")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->type_name("SECONDS");
   command->add_flag("--force", arguments->force, "replace the map that is in OUT");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->add_flag_callback(
@@ -140,7 +198,8 @@ void AddMapCommand(CLI::App& program, Run& run) {
       "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
       "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv and\n"
       "summary.json. Nothing is written before all of it is, and an OUT that exists is never\n"
-      "replaced without --force.");
+      "replaced without --force. Until then, what is done is kept in a hidden folder beside OUT\n"
+      "(.OUT.unfinished): whatever ends the run, the same command with --resume goes on.");
   command->callback([arguments, &run] { run = [arguments] { return RunMap(*arguments); }; });
 }
 

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
+#include "masked_mapper/mapping/state_archive.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -34,49 +37,136 @@ void WarnOfTheLog(const std::string& path, const LogStatistics& log, MappingResu
   }
 }
 
+// What the checkpoint keeps beside the mapper: the survey, so that the log is not surveyed again.
+std::string PackState(const LogSurvey& survey, MaskedMapper& mapper) {
+  std::string survey_bytes = PackSurvey(survey);
+  std::string mapper_bytes = mapper.SaveState();
+  StateWriter writer;
+  writer(survey_bytes, mapper_bytes);
+  return writer.Take();
+}
+
+// One run over a log, with whatever is kept of it on the way.
+class LogDrive {
+ public:
+  LogDrive(const std::string& path, const std::string& mask, const Options& options,
+           ProgressSink& progress, CheckpointStore* checkpoints)
+      : path_(path), options_(options), progress_(progress), checkpoints_(checkpoints) {
+    std::optional<Checkpoint> checkpoint;
+    if (checkpoints_ != nullptr) checkpoint = checkpoints_->Load();
+    std::string mapper_bytes;
+    {
+      const StageTimer timer(read_seconds_);
+      progress_.Stage(checkpoint ? "resuming" : "reading");
+      if (checkpoint) {
+        std::string survey_bytes;
+        StateReader reader(checkpoint->state.bytes);
+        reader(survey_bytes, mapper_bytes);
+        reader.RequireEnd();
+        survey_ = UnpackSurvey(survey_bytes);
+      } else {
+        survey_ = SurveyLog(path_, options_);
+      }
+    }
+    settled_ = options_;
+    settled_.matcher.threads = ThreadCount(options_.threads);
+    settled_.motion.source = SettleMotionSource(path_, options_.motion.source, survey_);
+    mapper_.emplace(mask, settled_, survey_.floors);
+    log_ = OpenLog(path_, options_.log);
+    if (checkpoint) {
+      mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));
+      Skip(checkpoint->state.observations);
+    }
+  }
+
+  MappingResult Map() {
+    progress_.Stage("mapping");
+    while (const std::optional<Observation> observation = Next()) {
+      mapper_->Observe(*observation);
+      if (!std::holds_alternative<LaserScan>(*observation)) continue;
+      ++scans_;
+      try {
+        progress_.Progress(log_->Progress(), scans_);
+      } catch (...) {  // an interrupt: what is done is kept, unless it is next to nothing
+        if (has_saved_ || IsDue()) SaveCheckpoint();
+        throw;
+      }
+      if (IsDue()) SaveCheckpoint();
+    }
+    MappingResult result = mapper_->Finish();
+    result.log = log_->Statistics();
+    result.seconds.read += read_seconds_;
+    result.motion_source = settled_.motion.source;
+    for (const std::string& warning : survey_.warnings) {
+      result.warnings.push_back(path_ + ": " + warning);
+    }
+    WarnOfTheLog(path_, result.log, result);
+    for (const std::string& warning : result.warnings) progress_.Warn(warning);
+    return result;
+  }
+
+ private:
+  std::optional<Observation> Next() {
+    const StageTimer timer(read_seconds_);
+    std::optional<Observation> observation = log_->Next();
+    if (observation) ++observations_;
+    return observation;
+  }
+
+  // The log says again what had gone in; only the mask listens.
+  void Skip(std::uint64_t observations) {
+    while (observations_ < observations) {
+      const std::optional<Observation> observation = Next();
+      if (!observation) StateReader::Refuse("a log that is shorter than it was");
+      const auto* scan = std::get_if<LaserScan>(&*observation);
+      if (scan == nullptr) continue;
+      if (scans_ >= mapper_->result().trajectory.size()) StateReader::Refuse("too few poses");
+      mapper_->RememberScan(*scan);
+      progress_.Progress(log_->Progress(), ++scans_);
+    }
+    if (scans_ != mapper_->result().trajectory.size()) StateReader::Refuse("too many poses");
+  }
+
+  bool IsDue() { return checkpoints_ != nullptr && checkpoints_->IsDue(); }
+
+  void SaveCheckpoint() {
+    if (checkpoints_ == nullptr) return;
+    try {
+      has_saved_ = true;
+      checkpoints_->Save({observations_, log_->Progress(), PackState(survey_, *mapper_)},
+                         mapper_->result());
+    } catch (const std::runtime_error& error) {
+      progress_.Warn(std::string(error.what()) + "; going on without checkpoints");
+      checkpoints_ = nullptr;
+    }
+  }
+
+  std::string path_;
+  Options options_;
+  Options settled_;
+  ProgressSink& progress_;
+  CheckpointStore* checkpoints_;
+  LogSurvey survey_;
+  std::unique_ptr<LogReader> log_;
+  std::optional<MaskedMapper> mapper_;
+  std::uint64_t observations_ = 0;
+  std::uint64_t scans_ = 0;
+  bool has_saved_ = false;
+  double read_seconds_ = 0.0;
+};
+
 }  // namespace
 
 MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
-                     ProgressSink& progress) {
-  Options settled = options;
-  settled.matcher.threads = ThreadCount(options.threads);
+                     ProgressSink& progress, CheckpointStore* checkpoints) {
   double total_seconds = 0.0;
   std::optional<StageTimer> total_timer(std::in_place, total_seconds);
-  double survey_seconds = 0.0;
-  LogSurvey survey;
-  {
-    const StageTimer timer(survey_seconds);
-    progress.Stage("reading");
-    survey = SurveyLog(path, options);
-    settled.motion.source = SettleMotionSource(path, options.motion.source, survey);
+  MappingResult result;
+  try {
+    result = LogDrive(path, mask, options, progress, checkpoints).Map();
+  } catch (const StateError& error) {
+    throw InputError(path + ": the checkpoint does not fit this log: " + error.what());
   }
-  MaskedMapper mapper(mask, settled, survey.floors);
-
-  progress.Stage("mapping");
-  const std::unique_ptr<LogReader> log = OpenLog(path, options.log);
-  double read_seconds = survey_seconds;
-  std::uint64_t scans = 0;
-  while (true) {
-    std::optional<Observation> observation;
-    {
-      const StageTimer timer(read_seconds);
-      observation = log->Next();
-    }
-    if (!observation) break;
-    mapper.Observe(*observation);
-    if (std::holds_alternative<LaserScan>(*observation)) {
-      progress.Progress(log->Progress(), ++scans);
-    }
-  }
-  MappingResult result = mapper.Finish();
-  result.log = log->Statistics();
-  result.seconds.read = read_seconds;
-  result.motion_source = settled.motion.source;
-  for (const std::string& warning : survey.warnings) {
-    result.warnings.push_back(path + ": " + warning);
-  }
-  WarnOfTheLog(path, result.log, result);
-  for (const std::string& warning : result.warnings) progress.Warn(warning);
   total_timer.reset();
   result.seconds.total = total_seconds;
   return result;

@@ -53,9 +53,15 @@ const LocalMap& Submaps::SubmapOf(NodeId node) {
     recently_used_.pop_back();
   }
   recently_used_.push_front(node);
-  const bool is_complete = Distance(center.T_odom_robot, result_.trajectory.back().T_odom_robot) >
-                               options_.half_length_m ||
-                           center.floor != result_.trajectory.back().floor;
+  // By the scan kept last, at which Build() would stop: what is kept later changes nothing then,
+  // and the submap depends on the node alone, not on when it was built.
+  const std::size_t last_kept = result_.kept_scans.empty()
+                                    ? result_.trajectory.size() - 1
+                                    : result_.kept_scans.back().trajectory_index;
+  const TrajectoryPose& last = result_.trajectory[last_kept];
+  const bool is_complete =
+      Distance(center.T_odom_robot, last.T_odom_robot) > options_.half_length_m ||
+      center.floor != last.floor;
   return submaps_.emplace(node, Entry{Build(node), recently_used_.begin(), is_complete})
       .first->second.map;
 }

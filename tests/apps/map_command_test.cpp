@@ -158,9 +158,17 @@ TEST(MapCommand, ResumeWithoutAnythingToResumeStartsAfresh) {
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_TRUE(fs::exists(folder / out + "/summary.json"));
   }
-  // A finished map is not gone on with, and not replaced either.
-  ExpectUsersFault(folder, {"map", folder / "ring.log", "-o", folder / "missing", "--resume"},
-                   "--force");
+  // A finished map is not gone on with; one that was asked for otherwise is not replaced either.
+  const std::string summary = ReadText(folder / "missing/summary.json");
+  const std::vector<std::string> again = {"map", folder / "ring.log", "-o", folder / "missing",
+                                          "--resume"};
+  const Ran ran = RunProgram(again);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(Contains(ran.out, "finished already")) << ran.out;
+  EXPECT_EQ(ReadText(folder / "missing/summary.json"), summary);
+  std::vector<std::string> otherwise = again;
+  otherwise.insert(otherwise.end(), {"--mask", "always"});
+  ExpectUsersFault(folder, otherwise, "mask was openings, now it is always");
 }
 
 TEST(MapCommand, SettingsWinOverTheConfigurationAndTheConfigurationOverDefaults) {
@@ -186,6 +194,62 @@ TEST(MapCommand, AnInterruptLeavesNothing) {
   EXPECT_EQ(ran.code, 1) << ran.err;
   EXPECT_TRUE(Contains(ran.err, "interrupted")) << ran.err;
   EXPECT_EQ(folder.Listing(), before);
+}
+
+TEST(MapCommand, AKilledRunGoesOnToTheSameBytes) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(RingLog(12)));
+  const std::string out = folder / "out";
+  std::vector<std::string> map = {"map",    folder / "ring.log", "-o",      out, "--mask",
+                                  "always", "--checkpoint",      "0.000001"};
+  ASSERT_EQ(
+      RunProgram({"map", folder / "ring.log", "-o", folder / "whole", "--mask", "always"}).code, 0);
+  map.emplace_back("--resume");
+  RunSettings settings;
+  int killed = 0;
+  for (const int milliseconds : {40, 80, 120, 160, 200}) {
+    settings.kill_after_ms = milliseconds;
+    killed += RunProgram(map, settings).code == -1 ? 1 : 0;
+  }
+  EXPECT_GT(killed, 0);
+  if (fs::exists(folder / ".out.unfinished/checkpoint.mmck")) {
+    // What was done is not thrown away unasked, nor for other wishes.
+    std::vector<std::string> afresh(map.begin(), map.end() - 1);
+    ExpectUsersFault(folder, afresh, "--resume");
+    std::vector<std::string> otherwise = map;
+    otherwise.insert(otherwise.end(), {"--set", "matcher.min_score=0.5"});
+    const Ran refused = RunProgram(otherwise);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(Contains(refused.err, "matcher.min_score was 0.425, now it is 0.5")) << refused.err;
+  }
+  const Ran ran = RunProgram(map);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_FALSE(fs::exists(folder / ".out.unfinished"));
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "whole")) {
+    const std::string name = entry.path().lexically_relative(folder / "whole").string();
+    if (entry.is_directory() || name == "summary.json" || name == "report.html") continue;
+    EXPECT_TRUE(ReadText(entry.path().string()) == ReadText(out + "/" + name)) << name;
+  }
+}
+
+TEST(MapCommand, AnInterruptKeepsWhatIsDone) {
+  const ScratchFolder folder;
+  WriteText(folder / "ring.log", Joined(RingLog(20)));
+  const std::vector<std::string> map = {
+      "map",    folder / "ring.log", "-o",      folder / "out", "--mask",
+      "always", "--checkpoint",      "0.000001"};
+  RunSettings settings;
+  settings.interrupt = true;
+  const Ran ran = RunProgram(map, settings);
+  EXPECT_EQ(ran.code, 1) << ran.err;
+  EXPECT_TRUE(Contains(ran.err, "--resume goes on")) << ran.err;
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  EXPECT_TRUE(fs::exists(folder / ".out.unfinished/checkpoint.mmck"));
+  // Afresh, when that is wanted.
+  std::vector<std::string> afresh = map;
+  afresh.emplace_back("--force");
+  EXPECT_EQ(RunProgram(afresh).code, 0);
+  EXPECT_FALSE(fs::exists(folder / ".out.unfinished"));
 }
 
 TEST(MapCommand, MapWritesTheContract) {

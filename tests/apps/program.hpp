@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -31,6 +32,7 @@ struct RunSettings {
   rlim_t largest_file = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
   bool terminal = false;                ///< standard error is a terminal
   bool interrupt = false;               ///< Ctrl-C as soon as it says anything
+  int kill_after_ms = 0;                ///< end it without a warning; 0: do not
 };
 
 /// Reads until all are closed; calls `spoken` once, when the first byte has come.
@@ -79,6 +81,11 @@ inline Ran RunProgram(const std::vector<std::string>& arguments, const RunSettin
       const rlimit limit{settings.largest_file, settings.largest_file};
       setrlimit(RLIMIT_FSIZE, &limit);
       std::signal(SIGXFSZ, SIG_IGN);
+    }
+    // The kernel's timer outlives the exec, and its signal ends a program that does not know it.
+    if (settings.kill_after_ms > 0) {
+      const itimerval timer{{0, 0}, {0, 1000 * settings.kill_after_ms}};
+      setitimer(ITIMER_REAL, &timer, nullptr);
     }
     execv(words[0], words.data());
     _exit(127);

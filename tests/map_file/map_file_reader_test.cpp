@@ -7,8 +7,8 @@
 
 #include "export/sample_map.hpp"
 #include "map_file/database.hpp"
-#include "map_file/same_map.hpp"
 #include "map_file/schema.hpp"
+#include "mapping/same_map.hpp"
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/option_table.hpp"

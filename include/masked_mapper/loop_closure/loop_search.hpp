@@ -20,6 +20,12 @@ struct Hypothesis {
   UncertainPose2 T_a_b;
   int votes = 0;
   bool validated = false;
+
+  /// For a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(a, b, T_a_b, votes, validated);
+  }
 };
 
 /// One edge of a path, as walked.
@@ -64,6 +70,19 @@ class LoopSearch {
   std::optional<LeastErrorPath> Find(const PoseGraph& graph,
                                      const std::vector<Hypothesis>& hypotheses, NodeId from,
                                      NodeId to, double max_trace, const RemovedSteps& removed);
+
+  /// The state, for a checkpoint (mapping/state_archive.hpp); `hypotheses` as given to Find().
+  template <class Archive>
+  void Serialize(Archive& archive, const std::vector<Hypothesis>& hypotheses) {
+    archive(hypotheses_of_);
+    for (const std::vector<HypothesisId>& ids : hypotheses_of_) {
+      for (const HypothesisId id : ids) {
+        if (id < 0 || static_cast<std::size_t>(id) >= hypotheses.size()) {
+          archive.Refuse("a search for hypotheses that there are not");
+        }
+      }
+    }
+  }
 
  private:
   struct Reached {

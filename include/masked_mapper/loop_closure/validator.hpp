@@ -62,6 +62,19 @@ class LoopValidator {
 
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(hypotheses_, standings_, waiting_, ties_);
+    search_.Serialize(archive, hypotheses_);
+    if (standings_.size() != hypotheses_.size()) archive.Refuse("standings of no hypotheses");
+    for (const HypothesisId id : waiting_) {
+      if (id < 0 || static_cast<std::size_t>(id) >= hypotheses_.size()) {
+        archive.Refuse("a waiting hypothesis that there is not");
+      }
+    }
+  }
+
  private:
   // What is known of a hypothesis beside its votes.
   struct Standing {
@@ -70,6 +83,11 @@ class LoopValidator {
     // The last refusal, so that it is not worked out again while nothing has changed.
     std::size_t refused_with_places = 0;
     int refused_with_ties = -1;
+
+    template <class Archive>
+    void Serialize(Archive& archive) {
+      archive(loose_votes, places, refused_with_places, refused_with_ties);
+    }
   };
 
   void JudgeOne(const PoseGraph& graph, HypothesisId id);

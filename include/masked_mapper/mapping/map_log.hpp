@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "masked_mapper/mapping/checkpoint.hpp"
 #include "masked_mapper/mapping/mapping_result.hpp"
 #include "masked_mapper/mapping/options.hpp"
 #include "masked_mapper/mapping/progress_sink.hpp"
@@ -11,8 +12,10 @@
 namespace masked_mapper {
 
 /// Maps one log. Throws InputError for what is the user's fault: a log that cannot be read or holds
-/// no scan, a mask expression that is none.
+/// no scan, a mask expression that is none. With `checkpoints`, goes on from the one in store, if
+/// there is one of the same log, mask and options, and keeps others on the way; also one when
+/// `progress` throws. The map is the same with and without; its seconds are those of this run.
 MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
-                     ProgressSink& progress);
+                     ProgressSink& progress, CheckpointStore* checkpoints = nullptr);
 
 }  // namespace masked_mapper

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/mapping/checkpoint.hpp"
 #include "masked_mapper/mapping/mapping_result.hpp"
 #include "masked_mapper/mapping/options.hpp"
 #include "masked_mapper/mapping/submaps.hpp"
@@ -33,7 +34,19 @@ class MaskedMapper {
 
   const MappingResult& result() const { return result_; }
 
+  // For checkpoints; all of this stands in checkpoint.cpp.
+  /// Everything that the observations so far left behind, but for the parts that only grow and for
+  /// the mask's memory.
+  std::string SaveState();
+  /// To a mapper made with the same mask, options and floors, before any observation. Throws
+  /// StateError.
+  void RestoreState(const std::string& bytes, GrownParts parts);
+  /// After that: the scans that had gone in before, in order, so that the mask remembers them.
+  void RememberScan(const LaserScan& scan);
+
  private:
+  template <class Archive>
+  void SerializeState(Archive& archive);
   void ObserveScan(const LaserScan& scan);
   void ChangeFloor(const FloorInterval& interval, double stamp);
   NodeId AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
@@ -62,6 +75,7 @@ class MaskedMapper {
   std::vector<std::size_t> attempt_of_hypothesis_;
   std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
   double travelled_since_kept_m_ = 0.0;
+  std::size_t remembered_scans_ = 0;  ///< by RememberScan
 };
 
 }  // namespace masked_mapper

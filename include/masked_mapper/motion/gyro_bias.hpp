@@ -26,6 +26,17 @@ class GyroBias {
   /// What the heading drifts, radians per second.
   double rate() const { return rate_; }
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    bool started = last_.has_value();
+    archive(started);
+    if (started && !last_) last_.emplace();
+    if (!started) last_.reset();
+    if (last_) archive(last_->stamp, last_->T_odom_robot);
+    archive(rate_, seconds_);
+  }
+
  private:
   GyroBiasOptions options_;
   std::optional<OdometryReading> last_;

@@ -55,6 +55,13 @@ class MotionEstimator {
   /// Motion since the last node, with covariance in the node's frame.
   const UncertainPose2& T_node_robot() const { return T_node_robot_; }
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
+            last_step_s_, T_odom_robot_, T_node_robot_);
+  }
+
  private:
   UncertainPose2 StepWithoutWheels(double stamp) const;
   void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);

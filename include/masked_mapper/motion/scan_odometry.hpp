@@ -52,6 +52,21 @@ class ScanOdometry {
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(T_map_robot_, T_map_keyframe_, T_matched_robot_, T_map_matched_, last_step_);
+    for (std::optional<LocalMap>* map : {&map_, &next_map_}) {
+      bool present = map->has_value();
+      archive(present);
+      if (present && !*map) map->emplace(options_.map, Eigen::Vector2d::Zero());
+      if (!present) map->reset();
+      if (present) archive(**map);
+    }
+    archive(matched_heading_variance_, rest_scans_, heading_sigma_rad_, inlier_share_, reach_m_,
+            lost_);
+  }
+
  private:
   void AddKeyframe(const ScanPoints& points);
   Alignment AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,

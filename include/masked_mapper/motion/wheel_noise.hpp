@@ -38,6 +38,13 @@ class WheelNoise {
 
   WheelScales scales() const;
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(travel_.mean, travel_.windows, turn_.mean, turn_.windows, runs_, travelled_m_,
+            turned_rad_, error_rad_);
+  }
+
  private:
   struct Ratio {
     double mean = 1.0;  ///< of squared error over the variance that dead reckoning expects

@@ -54,6 +54,12 @@ class PoseGraphOptimizer {
   /// summary tells of the last part that was solved; no iterations if nothing had to move.
   OptimizationSummary Update(PoseGraph& graph);
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(known_edges_);
+  }
+
  private:
   UpdateOptions options_;
   std::size_t known_edges_ = 0;  // of the graph, the last time

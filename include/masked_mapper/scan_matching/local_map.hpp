@@ -63,10 +63,40 @@ class LocalMap {
 
   std::size_t scans() const { return scans_; }
 
+  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    // Most cells are empty: which cell a slot is of takes less room than the slot of every cell.
+    std::vector<std::int32_t> cell_of_slot(moments_.size());
+    for (std::size_t cell = 0; cell < slot_of_cell_.size(); ++cell) {
+      const std::int32_t slot = slot_of_cell_[cell];
+      if (slot >= 0) cell_of_slot[static_cast<std::size_t>(slot)] = static_cast<std::int32_t>(cell);
+    }
+    archive(corner_, cell_of_slot, moments_, distributions_, scans_);
+    if constexpr (Archive::kReads) {
+      if (moments_.size() != cell_of_slot.size() || distributions_.size() != cell_of_slot.size()) {
+        archive.Refuse("a local map that does not hold together");
+      }
+      slot_of_cell_.assign(slot_of_cell_.size(), -1);
+      for (std::size_t slot = 0; slot < cell_of_slot.size(); ++slot) {
+        const std::int32_t cell = cell_of_slot[slot];
+        if (cell < 0 || static_cast<std::size_t>(cell) >= slot_of_cell_.size()) {
+          archive.Refuse("a local map with a cell outside");
+        }
+        slot_of_cell_[static_cast<std::size_t>(cell)] = static_cast<std::int32_t>(slot);
+      }
+    }
+  }
+
  private:
   struct Moments {
     double count = 0.0;
     double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
+
+    template <class Archive>
+    void Serialize(Archive& archive) {
+      archive(count, x, y, xx, xy, yy);
+    }
   };
   struct Distribution {
     float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
@@ -74,6 +104,11 @@ class LocalMap {
     float small = 0.0F, large = 0.0F;        ///< variances, m^2
     bool is_line = false;
     bool is_known = false;
+
+    template <class Archive>
+    void Serialize(Archive& archive) {
+      archive(mean_x, mean_y, normal_x, normal_y, small, large, is_line, is_known);
+    }
   };
 
   int Index(double x, double y) const;

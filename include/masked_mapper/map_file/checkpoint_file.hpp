@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The unfinished map on disk: a SQLite file in a folder beside the one that the map goes to,
+// written in transactions, so that whatever ends the program, the last checkpoint stands.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "masked_mapper/map_file/saved_map.hpp"
+#include "masked_mapper/mapping/checkpoint.hpp"
+
+namespace masked_mapper {
+
+/// `out` without its last part, then `.NAME.unfinished`: where the checkpoint of a map that goes to
+/// `out` is kept.
+std::filesystem::path UnfinishedFolder(const std::filesystem::path& out);
+
+/// In words, how another run differs from the one that made a map or a checkpoint:
+/// "matcher.min_score was 0.425, now it is 0.5"; empty when it does not.
+std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now);
+
+class CheckpointFile : public CheckpointStore {
+ public:
+  /// Nothing is made before the first Save(). `interval_s` between two checkpoints at least, and
+  /// longer if one takes more than a small share of it; 0: only when asked by Save(). With
+  /// `resume`, Load() gives what is there; else the first Save() replaces it.
+  CheckpointFile(const std::filesystem::path& out, const MapOrigin& origin, double interval_s,
+                 bool resume);
+  ~CheckpointFile() override;
+
+  /// Whether there is a checkpoint of a map that goes to `out`.
+  static bool Exists(const std::filesystem::path& out);
+
+  std::optional<Checkpoint> Load() override;
+  bool IsDue() override;
+  void Save(const CheckpointState& state, const MappingResult& map) override;
+
+  /// Whether Load() found or Save() left something to go on from.
+  bool HasCheckpoint() const { return has_checkpoint_; }
+  /// The share of the log that has gone into it, 0 to 1.
+  double progress() const { return progress_; }
+  /// Removes it: the map is finished, or wanted no more.
+  void Remove();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  class Impl;
+
+  std::filesystem::path folder_;
+  MapOrigin origin_;
+  Clock::duration interval_;
+  Clock::time_point due_;
+  bool resume_;
+  bool has_checkpoint_ = false;
+  double progress_ = 0.0;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/map_file/checkpoint_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "database.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/mapping/state_archive.hpp"
+#include "packed_bytes.hpp"
+
+namespace fs = std::filesystem;
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::int64_t kCheckpointApplicationId = 0x4d6d636b;  // "Mmck"
+/// To be raised whenever the state of anything changes its shape. A checkpoint lives for hours and
+/// is not upgraded.
+constexpr std::int64_t kCheckpointVersion = 1;
+
+/// A checkpoint may take this share of the time to the next one.
+constexpr double kShare = 0.03;
+
+constexpr const char* kFileName = "checkpoint.mmck";
+
+// A file that has grown, was cut or replaced; read at both ends alone, since logs are large.
+std::string IdentityOf(const std::string& path) {
+  constexpr std::streamoff kEnd = 1 << 16;
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) return "";
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(static_cast<std::size_t>(kEnd), '\0');
+  std::uint32_t checksum = 0;
+  in.read(bytes.data(), kEnd);
+  checksum = Checksum({bytes.data(), static_cast<std::size_t>(in.gcount())}, checksum);
+  if (size > static_cast<std::uintmax_t>(kEnd)) {
+    in.seekg(-kEnd, std::ios::end);
+    in.read(bytes.data(), kEnd);
+    checksum = Checksum({bytes.data(), static_cast<std::size_t>(in.gcount())}, checksum);
+  }
+  return std::to_string(size) + " bytes, checksum " + std::to_string(checksum);
+}
+
+std::string LogIdentity(const MapOrigin& origin) {
+  const std::string floors = IdentityOf(origin.options.floors.file);
+  return IdentityOf(origin.log) + (floors.empty() ? "" : "; floors: " + floors);
+}
+
+using Key = std::vector<std::pair<std::string, std::string>>;
+
+// Everything that the map depends on, but for the program.
+Key KeyOf(const MapOrigin& origin) {
+  Key key = {{"log", origin.log}, {"mask", origin.mask}};
+  Options options = origin.options;
+  for (const OptionEntry& entry : OptionTable(options)) {
+    if (entry.key != "threads") key.emplace_back(entry.key, ValueText(entry));
+  }
+  return key;
+}
+
+std::string FirstDifference(const Key& before, const Key& now) {
+  std::map<std::string, std::string> old(before.begin(), before.end());
+  for (const auto& [key, value] : now) {
+    const auto found = old.find(key);
+    if (found == old.end()) return key + " was not known, now it is " + value;
+    if (found->second != value) return key + " was " + found->second + ", now it is " + value;
+  }
+  return before.size() == now.size() ? "" : "it had other options";
+}
+
+enum class PieceKind : std::int64_t { kPoses, kScans, kPoints };
+
+}  // namespace
+
+fs::path UnfinishedFolder(const fs::path& out) {
+  fs::path resolved = fs::weakly_canonical(fs::absolute(out));
+  if (!resolved.has_filename()) resolved = resolved.parent_path();
+  return resolved.parent_path() / ("." + resolved.filename().string() + ".unfinished");
+}
+
+std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now) {
+  return FirstDifference(KeyOf(before), KeyOf(now));
+}
+
+/// The open file, and how much of the grown parts is in it.
+class CheckpointFile::Impl {
+ public:
+  explicit Impl(const fs::path& file) : database_(file, OpenMode::kWrite) {
+    // The file is this program's alone until it ends, which also does without a file of shared
+    // memory. A commit is in the log of the write-ahead journal, whatever ends the program; only a
+    // loss of power may take the last ones along.
+    database_.Run("PRAGMA locking_mode = EXCLUSIVE");
+    database_.Text("PRAGMA journal_mode = WAL");
+    database_.Run("PRAGMA synchronous = NORMAL");
+  }
+
+  void Make(const Key& key, const std::string& log_identity) {
+    Transaction transaction(database_);
+    database_.Run(
+        "CREATE TABLE run(id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL)"
+        " STRICT");
+    database_.Run("CREATE TABLE log(id INTEGER PRIMARY KEY, identity TEXT NOT NULL) STRICT");
+    database_.Run(
+        "CREATE TABLE pieces(id INTEGER PRIMARY KEY, kind INTEGER NOT NULL,"
+        " bytes BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT");
+    database_.Run(
+        "CREATE TABLE state(id INTEGER PRIMARY KEY, observations INTEGER NOT NULL,"
+        " progress REAL NOT NULL, bytes BLOB NOT NULL, checksum INTEGER NOT NULL)"
+        " STRICT");
+    database_.Run("PRAGMA application_id = " + std::to_string(kCheckpointApplicationId));
+    database_.Run("PRAGMA user_version = " + std::to_string(kCheckpointVersion));
+    Statement run(database_, "INSERT INTO run(key, value) VALUES (?,?)");
+    for (const auto& [name, value] : key) run.BindText(name).BindText(value).Put();
+    Statement(database_, "INSERT INTO log(identity) VALUES (?)").BindText(log_identity).Put();
+    transaction.Commit();
+  }
+
+  bool IsOurs() {
+    return database_.Number("PRAGMA application_id") == kCheckpointApplicationId &&
+           database_.Number("PRAGMA user_version") == kCheckpointVersion;
+  }
+
+  bool IsEmpty() { return database_.Number("SELECT count(*) FROM sqlite_master") == 0; }
+
+  Key ReadKey() {
+    Key key;
+    Statement rows(database_, "SELECT key, value FROM run ORDER BY id");
+    while (rows.Next()) {
+      std::string name(rows.Text());
+      key.emplace_back(std::move(name), rows.Text());
+    }
+    return key;
+  }
+
+  std::string ReadLogIdentity() { return database_.Text("SELECT identity FROM log"); }
+
+  std::optional<Checkpoint> Read() {
+    Checkpoint checkpoint;
+    Statement state(database_,
+                    "SELECT observations, progress, bytes, checksum FROM state WHERE id = 0");
+    if (!state.Next()) return std::nullopt;
+    checkpoint.state.observations = static_cast<std::uint64_t>(state.Integer());
+    checkpoint.state.progress = state.Real();
+    checkpoint.state.bytes = TakeBytes(state);
+    Statement pieces(database_, "SELECT kind, bytes, checksum FROM pieces ORDER BY id");
+    while (pieces.Next()) {
+      const auto kind = static_cast<PieceKind>(pieces.Integer());
+      const std::string bytes = TakeBytes(pieces);
+      switch (kind) {
+        case PieceKind::kPoses:
+          AppendPoses(bytes, checkpoint.parts);
+          break;
+        case PieceKind::kScans:
+          AppendScans(bytes, checkpoint.parts);
+          break;
+        case PieceKind::kPoints:
+          AppendPoints(bytes, checkpoint.parts);
+          break;
+        default:
+          throw DatabaseError("a piece of no known kind");
+      }
+    }
+    poses_ = checkpoint.parts.trajectory.size();
+    scans_ = checkpoint.parts.kept_scans.size();
+    nodes_ = checkpoint.parts.points_of_nodes.size();
+    return checkpoint;
+  }
+
+  void Write(const CheckpointState& state, const MappingResult& map) {
+    const std::vector<Node>& nodes = map.graph.nodes();
+    Transaction transaction(database_);
+    WritePiece(PieceKind::kPoses, PackPoses(map.trajectory, poses_));
+    WritePiece(PieceKind::kScans, PackScans(map.kept_scans, scans_));
+    WritePiece(PieceKind::kPoints, PackPoints(nodes, nodes_));
+    Statement write(database_, "INSERT OR REPLACE INTO state VALUES (0,?,?,?,?)");
+    write.Bind(static_cast<std::int64_t>(state.observations)).Bind(state.progress);
+    write.BindBlob(state.bytes).Bind(std::int64_t{Checksum(state.bytes)}).Put();
+    transaction.Commit();
+    poses_ = map.trajectory.size();
+    scans_ = map.kept_scans.size();
+    nodes_ = nodes.size();
+  }
+
+ private:
+  static std::string TakeBytes(Statement& row) {
+    std::string bytes(row.Blob());
+    if (row.Integer() != std::int64_t{Checksum(bytes)}) {
+      throw DatabaseError("bytes that do not fit their checksum");
+    }
+    return bytes;
+  }
+
+  void WritePiece(PieceKind kind, const std::string& bytes) {
+    if (bytes.empty()) return;
+    Statement insert(database_, "INSERT INTO pieces(kind, bytes, checksum) VALUES (?,?,?)");
+    insert.Bind(static_cast<std::int64_t>(kind)).BindBlob(bytes);
+    insert.Bind(std::int64_t{Checksum(bytes)}).Put();
+  }
+
+  Database database_;
+  std::size_t poses_ = 0;
+  std::size_t scans_ = 0;
+  std::size_t nodes_ = 0;
+};
+
+CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, double interval_s,
+                               bool resume)
+    : folder_(UnfinishedFolder(out)),
+      origin_(origin),
+      interval_(
+          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_s))),
+      due_(interval_s > 0.0 ? Clock::now() + interval_ : Clock::time_point::max()),
+      resume_(resume) {}
+
+CheckpointFile::~CheckpointFile() = default;
+
+bool CheckpointFile::Exists(const fs::path& out) {
+  return fs::exists(UnfinishedFolder(out) / kFileName);
+}
+
+std::optional<Checkpoint> CheckpointFile::Load() {
+  if (!resume_ || !fs::exists(folder_ / kFileName)) return std::nullopt;
+  const std::string name = (folder_ / kFileName).string();
+  try {
+    auto opened = std::make_unique<Impl>(folder_ / kFileName);
+    if (opened->IsEmpty()) return std::nullopt;
+    if (!opened->IsOurs()) {
+      throw InputError(name + ": written by another version of the program; --force starts afresh");
+    }
+    const std::string difference = FirstDifference(opened->ReadKey(), KeyOf(origin_));
+    if (!difference.empty()) {
+      throw InputError("the unfinished map was made otherwise: " + difference +
+                       "; --force starts afresh");
+    }
+    if (opened->ReadLogIdentity() != LogIdentity(origin_)) {
+      throw InputError(origin_.log +
+                       ": has changed since the unfinished map was begun; --force "
+                       "starts afresh");
+    }
+    std::optional<Checkpoint> checkpoint = opened->Read();
+    if (!checkpoint) return std::nullopt;
+    impl_ = std::move(opened);
+    has_checkpoint_ = true;
+    progress_ = checkpoint->state.progress;
+    if (due_ != Clock::time_point::max()) due_ = Clock::now() + interval_;
+    return checkpoint;
+  } catch (const DatabaseError& error) {
+    if (error.is_busy) throw InputError(name + ": another run is at work on this map");
+    throw InputError(name + ": damaged, cannot be used: " + error.what() +
+                     "; --force starts afresh");
+  } catch (const StateError& error) {
+    throw InputError(name + ": damaged, cannot be used: " + error.what() +
+                     "; --force starts afresh");
+  }
+}
+
+bool CheckpointFile::IsDue() { return Clock::now() >= due_; }
+
+void CheckpointFile::Save(const CheckpointState& state, const MappingResult& map) {
+  const Clock::time_point start = Clock::now();
+  try {
+    if (!impl_) {
+      fs::create_directories(folder_);
+      for (const char* ending : {"", "-wal", "-journal", "-shm"}) {
+        fs::remove((folder_ / kFileName).string() + ending);
+      }
+      auto made = std::make_unique<Impl>(folder_ / kFileName);
+      made->Make(KeyOf(origin_), LogIdentity(origin_));
+      impl_ = std::move(made);
+    }
+    impl_->Write(state, map);
+  } catch (const DatabaseError& error) {
+    throw std::runtime_error("cannot write " + (folder_ / kFileName).string() + ": " +
+                             error.what());
+  }
+  has_checkpoint_ = true;
+  progress_ = state.progress;
+  const Clock::duration took = Clock::now() - start;
+  const auto rest =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(took) / kShare);
+  if (due_ != Clock::time_point::max()) due_ = Clock::now() + std::max(interval_, rest);
+}
+
+void CheckpointFile::Remove() {
+  impl_.reset();
+  has_checkpoint_ = false;
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mapping/ring_drive.hpp"
+#include "mapping/same_map.hpp"
+#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper/mapping/state_archive.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Two floors, a ride between them and back.
+FloorTimeline TwoFloors(const RingDrive& drive) {
+  const auto stamp = [&](double share) {
+    return drive.scans[static_cast<std::size_t>(share * static_cast<double>(drive.scans.size()))]
+        .stamp;
+  };
+  FloorTimeline floors;
+  floors.levels.push_back({"up", 3.0, 0.1, true, true});
+  floors.intervals.push_back({stamp(0.40), 0, true});
+  floors.intervals.push_back({stamp(0.42), 1, true});
+  floors.intervals.push_back({stamp(0.45), 1, false});
+  for (FloorInterval& interval : floors.intervals) interval.travelled_m = 5.0;  // stairs
+  floors.intervals.push_back({stamp(0.70), 0, false});  // without a word of the ride
+  return floors;
+}
+
+Options OptionsFor(MotionSource source) {
+  Options options;
+  options.motion.source = source;
+  return options;
+}
+
+/// What a store would keep and give back.
+Checkpoint Kept(MaskedMapper& mapper) {
+  Checkpoint checkpoint;
+  checkpoint.state.bytes = mapper.SaveState();
+  // In two pieces, as they grow.
+  const MappingResult& map = mapper.result();
+  std::vector<TrajectoryPose> poses = map.trajectory;
+  std::vector<KeptScan> scans = map.kept_scans;
+  std::vector<Node> nodes = map.graph.nodes();
+  poses.resize(poses.size() / 2);
+  scans.resize(scans.size() / 2);
+  nodes.resize(nodes.size() / 2);
+  AppendPoses(PackPoses(poses, 0), checkpoint.parts);
+  AppendPoses(PackPoses(map.trajectory, poses.size()), checkpoint.parts);
+  AppendScans(PackScans(scans, 0), checkpoint.parts);
+  AppendScans(PackScans(map.kept_scans, scans.size()), checkpoint.parts);
+  AppendPoints(PackPoints(nodes, 0), checkpoint.parts);
+  AppendPoints(PackPoints(map.graph.nodes(), nodes.size()), checkpoint.parts);
+  return checkpoint;
+}
+
+MappingResult Unbroken(const RingDrive& drive, const std::string& mask, const Options& options,
+                       const FloorTimeline& floors) {
+  MaskedMapper mapper(mask, options, floors);
+  for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
+  return mapper.Finish();
+}
+
+/// The same, but at each of `breaks` all is put away and taken up by another mapper.
+MappingResult Broken(const RingDrive& drive, const std::string& mask, const Options& options,
+                     const FloorTimeline& floors, const std::vector<std::size_t>& breaks) {
+  auto mapper = std::make_unique<MaskedMapper>(mask, options, floors);
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    if (std::find(breaks.begin(), breaks.end(), i) != breaks.end()) {
+      Checkpoint checkpoint = Kept(*mapper);
+      mapper = std::make_unique<MaskedMapper>(mask, options, floors);
+      mapper->RestoreState(checkpoint.state.bytes, std::move(checkpoint.parts));
+      for (std::size_t j = 0; j < i; ++j) mapper->RememberScan(drive.scans[j]);
+    }
+    mapper->Observe(drive.scans[i]);
+  }
+  return mapper->Finish();
+}
+
+TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
+  const RingDrive drive(1.7, 0.3);
+  const std::size_t n = drive.scans.size();
+  const FloorTimeline one_floor;
+  const FloorTimeline two_floors = TwoFloors(drive);
+  const struct {
+    const char* mask;
+    MotionSource source;
+    const FloorTimeline& floors;
+  } drives[] = {
+      {"openings", MotionSource::kFused, two_floors},
+      {"any(openings,eccentricity)", MotionSource::kScans, one_floor},
+      {"always", MotionSource::kOdometry, two_floors},
+      {"not(openings)", MotionSource::kFused, one_floor},
+      {"never", MotionSource::kOdometry, one_floor},
+  };
+  for (const auto& one : drives) {
+    const Options options = OptionsFor(one.source);
+    const MappingResult whole = Unbroken(drive, one.mask, options, one.floors);
+    const MappingResult broken =
+        Broken(drive, one.mask, options, one.floors,
+               {1, 2, n / 5, 2 * n / 5, 41 * n / 100, 43 * n / 100, 46 * n / 100, n / 2, 7 * n / 10,
+                7 * n / 10 + 1, 4 * n / 5, n - 1});
+    EXPECT_TRUE(SameMap(whole, broken)) << one.mask;
+    if (std::string(one.mask) != "never") {
+      EXPECT_GE(whole.attempts.size(), 2U) << one.mask;
+    }
+  }
+}
+
+TEST(Checkpoint, BeforeTheFirstScanIsACheckpointToo) {
+  const RingDrive drive(0.3, 0.3);
+  const Options options = OptionsFor(MotionSource::kFused);
+  EXPECT_TRUE(SameMap(Unbroken(drive, "openings", options, {}),
+                      Broken(drive, "openings", options, {}, {0})));
+}
+
+TEST(Checkpoint, DamageIsRefusedOrHarmless) {
+  const RingDrive drive(0.6, 0.3);
+  const Options options = OptionsFor(MotionSource::kFused);
+  const FloorTimeline floors;
+  MaskedMapper mapper("openings", options, floors);
+  for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
+  const Checkpoint kept = Kept(mapper);
+  std::mt19937 random(1);
+  const auto restore = [&](const std::string& bytes) {
+    MaskedMapper other("openings", options, floors);
+    other.RestoreState(bytes, kept.parts);
+  };
+  restore(kept.state.bytes);
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_THROW(restore(kept.state.bytes.substr(0, random() % kept.state.bytes.size())),
+                 StateError);
+  }
+  EXPECT_THROW(restore(kept.state.bytes + "x"), StateError);
+  // Sizes that promise the sky must not be believed.
+  for (int i = 0; i < 200; ++i) {
+    std::string bytes = kept.state.bytes;
+    const std::size_t place = random() % (bytes.size() - 8);
+    bytes.replace(place, 8, 8, '\xff');
+    try {
+      restore(bytes);
+    } catch (const StateError&) {
+    }
+  }
+}
+
+TEST(Checkpoint, ASurveyComesBack) {
+  LogSurvey survey;
+  survey.scans = 7;
+  survey.has_odometry = true;
+  survey.median_period_s = 0.2;
+  survey.floors.levels.push_back({"up", 3.5, 0.1, true, false});
+  survey.floors.intervals.push_back({12.5, 1, true});
+  survey.floor_source = FloorSource::kPressure;
+  survey.warnings = {"a", ""};
+  const LogSurvey back = UnpackSurvey(PackSurvey(survey));
+  EXPECT_EQ(back.scans, 7U);
+  EXPECT_TRUE(back.has_odometry);
+  EXPECT_EQ(back.median_period_s, 0.2);
+  ASSERT_EQ(back.floors.levels.size(), 2U);
+  EXPECT_EQ(back.floors.levels[1].label, "up");
+  EXPECT_FALSE(back.floors.levels[1].identity_known);
+  EXPECT_EQ(back.floors.intervals[1].start, 12.5);
+  EXPECT_EQ(back.floor_source, FloorSource::kPressure);
+  EXPECT_EQ(back.warnings, survey.warnings);
+  survey.floors.intervals[1].level = 2;
+  EXPECT_THROW(UnpackSurvey(PackSurvey(survey)), StateError);
+  EXPECT_THROW(UnpackSurvey(""), StateError);
+}
+
+}  // namespace
+}  // namespace masked_mapper
