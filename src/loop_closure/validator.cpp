@@ -32,6 +32,7 @@ ValidatorOptions PaperRule() {
   ValidatorOptions options;
   options.max_loop_trace = kNoLimit;
   options.tight_loop_trace = kNoLimit;
+  options.sure_loop_trace = 0.0;
   options.places_needed = 0;
   options.max_contradiction = kNoLimit;
   return options;
@@ -98,6 +99,12 @@ void LoopValidator::JudgeOne(const PoseGraph& graph, HypothesisId id) {
       heard.push_back(agreeing);
     }
     agreeing.push_back(id);
+    // Where the way knows more than the match, there is nothing to gain by a hurry.
+    if (path->unvalidated == 0 && trace <= options_.sure_loop_trace &&
+        judged.T_a_b.covariance.trace() <= path->T_from_to.covariance.trace()) {
+      int& votes = hypotheses_[static_cast<std::size_t>(id)].votes;
+      votes = std::max(votes, options_.votes_needed - 1);
+    }
     CountLoop(graph, agreeing, tight);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/motion/scan_odometry.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,29 @@ Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const 
   return best;
 }
 
+// In a blank corridor the one thing that tells of the way along it may be a person who walks ahead
+// at the robot's pace. Wheels are overruled by a scan as a whole, not by a few points of it.
+Alignment ScanOdometry::AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
+                                             const Eigen::Matrix3d& prior_information) const {
+  const Alignment aligned = AlignFromSeveralGuesses(points, T_map_guess, prior_information);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> known(
+      aligned.information.topLeftCorner<2, 2>());
+  if (known.eigenvalues()(0) * options_.blank_ratio > known.eigenvalues()(1)) return aligned;
+  const Eigen::Vector2d along = known.eigenvectors().col(0);
+  const Eigen::Vector2d moved = aligned.T_map_robot.Translation() - T_map_guess.Translation();
+  const Eigen::Matrix2d position_covariance =
+      Eigen::Matrix3d(prior_information.inverse()).topLeftCorner<2, 2>();
+  const double variance = along.dot(position_covariance * along);
+  const double sigmas = along.dot(moved) / std::sqrt(variance);
+  if (std::abs(sigmas) < options_.overruling_sigmas) return aligned;
+  constexpr double kFirmly = 25.0;  // a fifth of its sigma
+  Eigen::Matrix3d firm = Eigen::Matrix3d::Zero();
+  firm.topLeftCorner<2, 2>() = kFirmly / variance * along * along.transpose();
+  const Alignment held =
+      map_->AlignHeld(points, {T_map_guess.x, T_map_guess.y, aligned.T_map_robot.theta}, firm);
+  return aligned.inlier_share < held.inlier_share + options_.overruling_share ? held : aligned;
+}
+
 void ScanOdometry::AddKeyframe(const ScanPoints& points) {
   if (!map_) map_.emplace(options_.map, T_map_robot_.Translation());
   map_->Add(points, T_map_robot_);
@@ -121,7 +145,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   Eigen::Matrix3d predicted_in_map = motion_in_map;
   predicted_in_map(2, 2) += matched_heading_variance_;
   const Eigen::Matrix3d prior = FlooredInverse(predicted_in_map);
-  const Alignment aligned = AlignFromSeveralGuesses(*points, T_map_robot_, prior);
+  const Alignment aligned = AlignUnlessOverruled(*points, T_map_robot_, prior);
   inlier_share_ = aligned.inlier_share;
   if (aligned.inlier_share >= options_.lost_inlier_share) {
     heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace masked_mapper {
@@ -206,6 +207,19 @@ double LocalMap::Agreement(const ScanPoints& points_in_robot, const Pose2& T_map
 
 Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
                           const Eigen::Matrix3d& prior_information) const {
+  return Align(points_in_robot, T_map_robot_guess, prior_information,
+               options_.guess_outlier_sigmas);
+}
+
+Alignment LocalMap::AlignHeld(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                              const Eigen::Matrix3d& prior_information) const {
+  return Align(points_in_robot, T_map_robot_guess, prior_information,
+               std::numeric_limits<double>::infinity());
+}
+
+Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                          const Eigen::Matrix3d& prior_information,
+                          double guess_outlier_sigmas) const {
   Alignment result;
   result.T_map_robot = T_map_robot_guess;
   if (points_in_robot.empty()) return result;
@@ -223,7 +237,7 @@ Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_
     // many sigmas loses its say (Cauchy), while one that they say nothing against keeps it.
     const double guess_chi2 = from_guess.dot(prior_information * from_guess);
     const Eigen::Matrix3d prior =
-        prior_information / (1.0 + guess_chi2 / Square(options_.guess_outlier_sigmas));
+        prior_information / (1.0 + guess_chi2 / Square(guess_outlier_sigmas));
     const Eigen::Matrix3d total = hessian / options_.covariance_inflation + prior;
     const Eigen::LDLT<Eigen::Matrix3d> factor(total);
     if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-9)) return result;

@@ -149,6 +149,27 @@ TEST(LoopValidator, ALoneMatchIsNotEnough) {
   }
 }
 
+TEST(LoopValidator, ALoneMatchThatASureWayConfirmsIsEnough) {
+  // A corner passed twice, two nodes after a place that is closed already.
+  int ours_takes_it = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Drive drive(0.01, 0.0005, seed);
+    const Revisit revisit = TwicePast(drive, 10, 40.0);
+    PoseGraph graph = drive.graph();
+    const Hypothesis known = drive.Match(revisit.second[7], revisit.first[7]);
+    graph.AddEdge({known.a, known.b, known.T_a_b, EdgeKind::kClosure});
+    const Hypothesis right = drive.Match(revisit.second[9], revisit.first[9]);
+    const Hypothesis wrong = drive.Match(revisit.second[9], revisit.first[9], {1.0, 0.0, 0.0});
+    LoopValidator ours({});
+    ours_takes_it += ours.Judge(graph, {right}).empty() ? 0 : 1;
+    LoopValidator ours_again({});
+    EXPECT_TRUE(ours_again.Judge(graph, {wrong}).empty()) << "1 m off, seed " << seed;
+    LoopValidator paper(PaperRule());
+    EXPECT_TRUE(paper.Judge(graph, {right}).empty()) << "six votes, seed " << seed;
+  }
+  EXPECT_GE(ours_takes_it, 16) << "of 20: a chi-square test refuses some that are right";
+}
+
 TEST(LoopValidator, VotesAreCountedOnBothSidesAndComeLater) {
   // Two rungs of a ladder: loops of each new rung with odometry, and with every rung before it.
   Drive drive(0.001, 0.0001, 2);

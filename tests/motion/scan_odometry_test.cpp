@@ -77,6 +77,64 @@ TEST(ScanOdometry, BlankCorridorIsNeitherShortenedNorCalledKnown) {
   EXPECT_LT(std::sqrt(path.covariance(0, 0)), 2.0 * 0.02 * std::sqrt(149.0));
 }
 
+TEST(ScanOdometry, APersonWalkingAheadDoesNotHoldTheRobotBack) {
+  const auto travelled = [](double blank_ratio) {
+    std::mt19937 random(9);
+    ScanOdometryOptions options;
+    options.blank_ratio = blank_ratio;
+    ScanOdometry odometry(options);
+    Pose2 path;
+    Pose2 truth{0.0, 0.2, 0.0};
+    for (int i = 0; i < 120; ++i) {
+      if (i > 0) truth.x += 0.12;
+      BoxScene corridor = BlankCorridor();
+      if (i > 30) corridor.AddBox(truth.x + 2.5, 0.1, truth.x + 2.7, 0.4);
+      const Pose2 wheels = i == 0 ? Pose2{} : Pose2{0.12, 0.0, 0.0};
+      path = path *
+             odometry.Observe(corridor.Scan(truth, 361, 270.0, &random), Wheels(wheels, 0.02, 1.0))
+                 .mean;
+    }
+    return path.x;
+  };
+  const double truth_m = 119 * 0.12;
+  EXPECT_NEAR(travelled(ScanOdometryOptions{}.blank_ratio), truth_m, 0.4) << "m along";
+  EXPECT_LT(travelled(1e9), 0.5 * truth_m) << "the scene is meant to be one that deceives";
+}
+
+TEST(ScanOdometry, AtRestAFewScansSettleTheHeadingOfAPoorView) {
+  // A cab: the first scans on a robot that turns in it err by tenths of a degree each.
+  BoxScene cab;
+  cab.AddBox(-0.8, -0.9, 0.8, 0.9);
+  double settled = 0.0;
+  double unsettled = 0.0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    for (const int rest_scans : {0, 15}) {
+      std::mt19937 random(seed);
+      ScanOdometryOptions options;
+      options.rest_scans = rest_scans;
+      ScanOdometry odometry(options);
+      Pose2 path;
+      Pose2 truth;
+      for (int i = 0; i < 80; ++i) {
+        // A first small turn, a rest while the door closes, half a turn, and the ride.
+        const bool turns = i == 1 || (i > 25 && i <= 45);
+        const double turn = turns ? DegToRad(i == 1 ? 1.0 : 9.0) : 0.0;
+        truth.theta = WrapAngle(truth.theta + turn);
+        std::normal_distribution<double> slip(0.0, DegToRad(0.12));
+        const Pose2 wheels{0.0, 0.0, turns ? turn + slip(random) : 0.0};
+        path = path * odometry
+                          .Observe(cab.Scan(truth, 361, 270.0, &random),
+                                   turns ? Wheels(wheels, 0.002, 0.12) : UncertainPose2{})
+                          .mean;
+      }
+      const double error = RadToDeg(std::abs(WrapAngle(path.theta - truth.theta)));
+      (rest_scans > 0 ? settled : unsettled) += error / 20.0;
+    }
+  }
+  EXPECT_LT(settled, 0.18) << "deg";
+  EXPECT_LT(settled, 0.9 * unsettled) << "deg";
+}
+
 TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   const BoxScene room = FurnishedRoom();
   BoxScene other;

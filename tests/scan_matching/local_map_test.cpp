@@ -84,6 +84,19 @@ TEST(LocalMap, CovarianceIsHonest) {
   EXPECT_GT(chi2, 3.0 * 0.02);
 }
 
+TEST(LocalMap, AHeldGuessKeepsItsSayAgainstThePoints) {
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(2);
+  LocalMap map({}, {3.0, 3.0});
+  const Pose2 truth{2.5, 2.6, 0.1};
+  map.Add(*PointsInRobot(room.Scan(truth, 361, 270.0, &random)), truth);
+  const Pose2 guess{2.55, 2.6, 0.1};
+  const ScanPoints::ConstPtr points = PointsInRobot(room.Scan(truth, 361, 270.0, &random));
+  const Eigen::Matrix3d firm = Eigen::Vector3d(1e9, 0.0, 0.0).asDiagonal();
+  EXPECT_NEAR(map.AlignHeld(*points, guess, firm).T_map_robot.x, guess.x, 0.002) << "m";
+  EXPECT_NEAR(map.Align(*points, guess, 1e-4 * firm).T_map_robot.x, truth.x, 0.01) << "m";
+}
+
 TEST(LocalMap, NothingInReachLeavesTheGuess) {
   const LocalMap empty({}, {0.0, 0.0});
   const Pose2 guess{1.0, 2.0, 0.5};

@@ -34,11 +34,15 @@ struct ValidatorOptions {
   /// `max_loose_votes` times at most.
   double tight_loop_trace = 0.25;
   int max_loose_votes = 2;
+  /// Trace up to which agreeing with a loop of validated closures and odometry alone is all the
+  /// votes that are needed: the match says what the map says already, and can hardly move it. A
+  /// corner passed twice offers no six loops.
+  double sure_loop_trace = 0.1;
   /// Places, farther apart than `place_radius_m`, whose closures have to agree before closures
   /// enter that no sure way to the rest of the map confirms; more the more they surprise
   /// (PlacesNeeded()).
   int places_needed = 3;
-  double place_radius_m = 5.0;
+  double place_radius_m = 2.5;
   /// Mahalanobis distance of the best validated way beyond which a closure stays out.
   double max_contradiction = 8.0;
 

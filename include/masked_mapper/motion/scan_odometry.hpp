@@ -27,6 +27,10 @@ struct ScanOdometryOptions {
   double repeat_difference_m = 0.1;  ///< between wheels and the step before, to try both
   double settled_deg = 0.03;  ///< sigma of the heading below which a robot at rest is not matched
   int rest_scans = 15;        ///< nor after as many scans at rest
+  double blank_ratio =
+      40.0;  ///< of what a scan knows across and along, that makes a corridor blank
+  double overruling_sigmas = 3.0;   ///< of the wheels, beyond which a scan has to be clear:
+  double overruling_share = 0.1;    ///< of its points more must agree than where the wheels put it
   double lost_inlier_share = 0.25;  ///< below it after all guesses the scan is not believed
 };
 
@@ -69,6 +73,8 @@ class ScanOdometry {
 
  private:
   void AddKeyframe(const ScanPoints& points);
+  Alignment AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
+                                 const Eigen::Matrix3d& prior_information) const;
   Alignment AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
                                     const Eigen::Matrix3d& prior_information) const;
 

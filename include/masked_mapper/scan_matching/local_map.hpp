@@ -57,6 +57,10 @@ class LocalMap {
   Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
                   const Eigen::Matrix3d& prior_information) const;
 
+  /// The same with a guess that keeps its say whatever the points hold against it.
+  Alignment AlignHeld(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                      const Eigen::Matrix3d& prior_information) const;
+
   /// Share of the points that agree with the map at a pose, 0-1: a cheap score to compare guesses.
   double Agreement(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
@@ -111,6 +115,8 @@ class LocalMap {
     }
   };
 
+  Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                  const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
   int Index(double x, double y) const;
   void Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
               std::vector<int>& touched);
