@@ -27,6 +27,14 @@ ScanPoints::ConstPtr PointsWithin(const ScanPoints::ConstPtr& points_in_robot, d
 
 constexpr double kMapMargin = 1.0;  // m; more than a robot moves from one keyframe to the next
 
+constexpr double kMostChi2 = 16.0;  // of three degrees of freedom: one in a thousand
+
+double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& information) {
+  const Eigen::Vector3d error(found.x - expected.x, found.y - expected.y,
+                              WrapAngle(found.theta - expected.theta));
+  return error.dot(information * error);
+}
+
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
 
 }  // namespace
@@ -147,7 +155,14 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   const Eigen::Matrix3d prior = FlooredInverse(predicted_in_map);
   const Alignment aligned = AlignUnlessOverruled(*points, T_map_robot_, prior);
   inlier_share_ = aligned.inlier_share;
-  if (aligned.inlier_share >= options_.lost_inlier_share) {
+  // Where the scene may have become another one a match has to be good, and for a robot at rest no
+  // news.
+  const bool is_doubtful = must_match || std::isfinite(reach_m_);
+  const bool is_believed =
+      aligned.inlier_share >=
+          (is_doubtful ? options_.min_inlier_share : options_.lost_inlier_share) &&
+      !(is_doubtful && is_at_rest && Chi2(T_map_robot_, aligned.T_map_robot, prior) > kMostChi2);
+  if (is_believed) {
     heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));
     matched_heading_variance_ = (aligned.information + prior).inverse()(2, 2);
     // Scans against one map err alike: a short step is worth its share of an alignment's
@@ -169,7 +184,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     step.covariance = T_matched_robot_.covariance;
     matched_heading_variance_ = predicted_in_map(2, 2);
   }
-  if (aligned.inlier_share < options_.lost_inlier_share && ++lost_ >= 5) {
+  if (!is_believed && ++lost_ >= 5) {
     // Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
     map_.reset();
     next_map_.reset();

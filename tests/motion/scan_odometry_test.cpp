@@ -135,6 +135,21 @@ TEST(ScanOdometry, AtRestAFewScansSettleTheHeadingOfAPoorView) {
   EXPECT_LT(settled, 0.9 * unsettled) << "deg";
 }
 
+TEST(ScanOdometry, AForcedMatchOfAnotherSceneDoesNotMoveARobotAtRest) {
+  const BoxScene room = FurnishedRoom();
+  BoxScene cab;
+  cab.AddBox(-1.0, -1.0, 1.0, 1.0);
+  std::mt19937 random(12);
+  ScanOdometry odometry({});
+  for (int i = 0; i < 5; ++i) {
+    odometry.Observe(room.Scan({3.0, 3.0, 1.0}, 361, 270.0, &random), UncertainPose2{});
+  }
+  const UncertainPose2 step =
+      odometry.Observe(cab.Scan({0.2, 0.1, 0.4}, 361, 270.0, &random), UncertainPose2{}, true);
+  EXPECT_LT(std::hypot(step.mean.x, step.mean.y), 0.01) << "m";
+  EXPECT_LT(RadToDeg(std::abs(step.mean.theta)), 0.2) << "deg";
+}
+
 TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   const BoxScene room = FurnishedRoom();
   BoxScene other;
