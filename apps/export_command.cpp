@@ -13,9 +13,12 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/export/single_export.hpp"
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/map_file/map_file_writer.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
 #include "saved_map_path.hpp"
 
@@ -30,6 +33,8 @@ struct ExportArguments {
   std::string file;
   std::string floor;
   std::string resolution;
+  std::string edits;
+  bool force = false;
   HeightBand heights;
   bool quiet = false;
 };
@@ -65,10 +70,45 @@ ExportFormat FormatNamed(const std::string& name) {
   if (found != names.end()) return static_cast<ExportFormat>(found - names.begin());
   std::string all;
   for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
-  throw InputError("export: --format must be one of " + all + ", not `" + name + "`");
+  throw InputError("export: --format must be one of " + all + ", all, not `" + name + "`");
+}
+
+SavedMap ReadMap(const ExportArguments& arguments) {
+  SavedMap map = ReadMapFile(MapFileOf(arguments.map));
+  if (!arguments.resolution.empty()) {
+    SetOption("--resolution", "grid.resolution_m", arguments.resolution, map.origin.options);
+  }
+  if (!arguments.edits.empty()) {
+    ApplyEdits(arguments.edits, map.origin.options, map.result);
+  }
+  return map;
+}
+
+ExportOptions OptionsOf(const SavedMap& map) {
+  ExportOptions options{map.origin.options.grid, map.origin.options.octree};
+  options.grid.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return options;
+}
+
+/// A whole folder, as `map` writes it.
+int ExportAll(const ExportArguments& arguments) {
+  if (!arguments.floor.empty() || arguments.heights != HeightBand{}) {
+    throw InputError("export: --format all is of all floors and heights");
+  }
+  const auto existing = arguments.force ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
+  CheckOutputFolder(arguments.file, existing);
+  const SavedMap map = ReadMap(arguments);
+  OutputFolder folder(arguments.file, existing);
+  WriteMapFile(map.origin, map.result, folder.path() / "building.mmap");
+  WriteMap(map.result, {map.origin.log, map.origin.mask, OptionValues(map.origin.options)},
+           OptionsOf(map), folder.path());
+  folder.Commit();
+  if (!arguments.quiet) std::cout << "all: " << arguments.file << "\n";
+  return 0;
 }
 
 int RunExport(const ExportArguments& arguments) {
+  if (arguments.format == "all") return ExportAll(arguments);
   SingleExport wanted;
   wanted.format = FormatNamed(arguments.format);
   wanted.heights = arguments.heights;
@@ -77,15 +117,11 @@ int RunExport(const ExportArguments& arguments) {
   if (fs::exists(file) && !fs::is_regular_file(file)) {
     throw InputError(arguments.file + " exists and is not a file");
   }
-  SavedMap map = ReadMapFile(MapFileOf(arguments.map));
-  if (!arguments.resolution.empty()) {
-    SetOption("--resolution", "grid.resolution_m", arguments.resolution, map.origin.options);
-  }
+  const SavedMap map = ReadMap(arguments);
   if (!arguments.floor.empty()) {
     wanted.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);
   }
-  ExportOptions options{map.origin.options.grid, map.origin.options.octree};
-  options.grid.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const ExportOptions options = OptionsOf(map);
   const AsideFolder aside(file);
   std::string written;
   for (const fs::path& part :
@@ -107,7 +143,9 @@ void AddExportCommand(CLI::App& program, Run& run) {
   command->add_option("OUT", arguments->map, "what `map` wrote, or the building.mmap in it")
       ->required()
       ->type_name("OUT|MAP");
-  command->add_option("--format", arguments->format, "octomap, pcd, ply, grid, tum or g2o")
+  command
+      ->add_option("--format", arguments->format,
+                   "octomap, pcd, ply, grid, tum or g2o; all: a folder")
       ->required()
       ->type_name("F");
   command->add_option("-o,--output", arguments->file, "the file to write; one there is replaced")
@@ -122,14 +160,21 @@ void AddExportCommand(CLI::App& program, Run& run) {
       ->type_name("METRES");
   command->add_option("--zmax", arguments->heights.high_m, "leave out what is higher, m")
       ->type_name("METRES");
+  command
+      ->add_option("--edits", arguments->edits,
+                   "mend the map as this file says, before it is written (docs/map_file.md)")
+      ->type_name("FILE");
+  command->add_flag("--force", arguments->force, "of --format all: replace the map in FILE");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->footer(
       "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
-      "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph).\n"
+      "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph);\n"
+      "all: everything that `map` writes, into a folder.\n"
       "With nothing else asked for, the bytes are those that `map` wrote.\n\n"
       "Examples:\n"
       "  masked_mapper export out --format octomap -o coarse.bt --resolution 0.2\n"
       "  masked_mapper export out/building.mmap --format grid --floor 2 -o second_floor.pgm\n"
+      "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
       "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd");
   command->callback([arguments, &run] { run = [arguments] { return RunExport(*arguments); }; });
 }

@@ -19,6 +19,7 @@
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/configuration.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
@@ -34,6 +35,7 @@ struct MapArguments {
   std::string out;
   std::string mask = "openings";
   OptionFlags options;
+  std::string edits;
   std::string floors;
   std::string threads;
   double checkpoint_s = 1.0;
@@ -65,6 +67,7 @@ Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, Existing
                 CheckpointFile& checkpoints, ProgressBar& progress) {
   const Options& options = origin.options;
   MappingResult result = MapLog(origin.log, origin.mask, options, progress, &checkpoints);
+  if (!arguments.edits.empty()) ApplyEdits(arguments.edits, options, result);
   progress.Stage("writing");
   OutputFolder folder(arguments.out, existing);
   double map_file_seconds = 0.0;
@@ -109,6 +112,10 @@ int RunMap(const MapArguments& arguments) {
   const MapOrigin origin{arguments.logs.front(), arguments.mask, options};
   CheckpointFile checkpoints(arguments.out, origin, arguments.checkpoint_s, arguments.resume);
   if (arguments.resume && IsFinished(arguments, origin)) {
+    if (!arguments.edits.empty()) {
+      throw InputError(arguments.out + " is finished already: `export " + arguments.out +
+                       " --format all --edits " + arguments.edits + " -o NEW` edits it");
+    }
     checkpoints.Remove();  // the program may have ended between the two
     if (!arguments.quiet) std::cout << "map: " << arguments.out << " is finished already\n";
     return 0;
@@ -125,8 +132,9 @@ int RunMap(const MapArguments& arguments) {
   Summary summary;
   try {
     summary = MakeMap(arguments, origin, existing, checkpoints, progress);
-  } catch (const InputError&) {
-    throw;
+  } catch (const InputError& error) {
+    if (!checkpoints.HasCheckpoint()) throw;
+    throw InputError(error.what() + HowToGoOn(checkpoints));
   } catch (const Interrupted&) {
     if (!checkpoints.HasCheckpoint()) throw;
     throw Interrupted("interrupted" + HowToGoOn(checkpoints));
@@ -175,6 +183,10 @@ void AddMapCommand(CLI::App& program, Run& run) {
       ->add_option("--threads", arguments->threads,
                    "threads to use, 0: all; the map is the same with any number")
       ->type_name("N");
+  command
+      ->add_option("--edits", arguments->edits,
+                   "mend the finished map as this file says (docs/map_file.md)")
+      ->type_name("FILE");
   command->add_flag("--resume", arguments->resume,
                     "go on with an unfinished map of OUT; without one, start afresh");
   command

@@ -1,45 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/mapping/configuration.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
+#include "yaml_tree.hpp"
 
 namespace masked_mapper {
 namespace {
-
-/// Ours ends after a few kilobytes; a file of this size is something else.
-constexpr std::uintmax_t kLargestFile = 1 << 20;
-/// Deeper than any section; an alias to its own parent would go on for ever.
-constexpr int kDeepest = 8;
 
 class Reader {
  public:
   Reader(std::string name, Options& options) : name_(std::move(name)), options_(options) {}
 
-  void ReadSection(const YAML::Node& section, const std::string& prefix, int depth) {
-    for (const auto& item : section) {
-      const std::string where = name_ + ":" + std::to_string(item.first.Mark().line + 1);
-      if (!item.first.IsScalar()) throw InputError(where + ": a key must be a word");
-      const std::string key = prefix + item.first.Scalar();
+  void ReadSection(const YamlTree& section, const std::string& prefix) {
+    for (const YamlTree::Entry& entry : section.entries) {
+      const std::string where = name_ + ":" + std::to_string(entry.line);
+      const std::string key = prefix + entry.key;
       // Also an emptied section: the same name twice would leave one of the two unread.
       if (!seen_.insert(key).second) throw InputError(where + ": " + key + " is given twice");
-      if (item.second.IsNull()) continue;  // its lines are commented out
-      if (item.second.IsMap() && depth < kDeepest) {
-        ReadSection(item.second, key + ".", depth + 1);
-      } else if (item.second.IsScalar()) {
-        SetOption(where, key, item.second.Scalar(), options_);
-      } else {
-        throw InputError(where + ": " + key + " must be one value, or a section of options");
+      switch (entry.tree.kind) {
+        case YamlTree::Kind::kEmpty:  // its lines are commented out
+          break;
+        case YamlTree::Kind::kSection:
+          ReadSection(entry.tree, key + ".");
+          break;
+        case YamlTree::Kind::kValue:
+          SetOption(where, key, entry.tree.value, options_);
+          break;
+        case YamlTree::Kind::kList:
+          throw InputError(where + ": " + key + " must be one value, or a section of options");
       }
     }
   }
@@ -73,33 +67,16 @@ std::string SectionHeads(const std::string& section, const std::string& open) {
 void ReadConfigurationText(const std::string& name, const std::string& text, Options& options) {
   // All or nothing: a file with a mistake on its last line changes no option.
   Options changed = options;
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) throw InputError(name + ": holds more than one YAML document");
-    for (const YAML::Node& root : documents) {
-      if (!root.IsMap() && !root.IsNull()) {
-        throw InputError(name + ":1: expected sections of `key: value` lines");
-      }
-      Reader(name, changed).ReadSection(root, "", 0);
-    }
-  } catch (const YAML::Exception& error) {
-    throw InputError(name + ":" + std::to_string(error.mark.line + 1) +
-                     ": not valid YAML: " + error.msg);
+  const YamlTree tree = ParseYaml(name, text);
+  if (tree.kind != YamlTree::Kind::kSection && tree.kind != YamlTree::Kind::kEmpty) {
+    throw InputError(name + ":1: expected sections of `key: value` lines");
   }
+  Reader(name, changed).ReadSection(tree, "");
   options = changed;
 }
 
 void ReadConfiguration(const std::string& path, Options& options) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(path + ": no such configuration file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(path + ": not a file");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > kLargestFile) throw InputError(path + ": too large for a configuration");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path + ": cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  ReadConfigurationText(path, text, options);
+  ReadConfigurationText(path, ReadSmallFile(path, "configuration"), options);
 }
 
 std::string ConfigurationText(const Options& options) {

@@ -81,6 +81,41 @@ TEST(ExportCommand, TheUsersFaultsAreOneLine) {
   EXPECT_EQ(folder.Listing(), before);
 }
 
+TEST(ExportCommand, AllOfItIsWhatMapWrote) {
+  const ScratchFolder folder;
+  MapRing(folder);
+  const std::vector<std::string> all = {"export", folder / "out", "--format",
+                                        "all",    "-o",           folder / "again"};
+  ASSERT_EQ(RunProgram(all).code, 0);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
+    const std::string name = entry.path().lexically_relative(folder / "out").string();
+    if (entry.is_directory() || name == "summary.json" || name == "report.html") continue;
+    EXPECT_TRUE(ReadText(entry.path().string()) == ReadText(folder / ("again/" + name))) << name;
+  }
+  EXPECT_EQ(RunProgram(all).code, 2);  // it is there already
+}
+
+TEST(ExportCommand, EditsMendTheMap) {
+  const ScratchFolder folder;
+  MapRing(folder);
+  WriteText(folder / "edits.yaml", "- name_floor: {floor: \"0\", name: ground}\n");
+  const Ran ran = RunProgram({"export", folder / "out", "--format", "all", "-o", folder / "mended",
+                              "--edits", folder / "edits.yaml"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ReadText(folder / "mended/floors/ground.pgm"), ReadText(folder / "out/floors/0.pgm"));
+  EXPECT_EQ(ReadText(folder / "mended/trajectory.tum"), ReadText(folder / "out/trajectory.tum"));
+  const Ran mapped = RunProgram({"map", folder / "ring.log", "-o", folder / "mapped", "--set",
+                                 "nodes.min_edge_length_m=2", "--edits", folder / "edits.yaml"});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  EXPECT_TRUE(ReadText(folder / "mapped/building.mmap") ==
+              ReadText(folder / "mended/building.mmap"));
+  WriteText(folder / "edits.yaml", "\n- name_floor: {floor: 7, name: ground}\n");
+  const Ran failed = RunProgram({"export", folder / "out", "--format", "pcd", "-o", folder / "x",
+                                 "--edits", folder / "edits.yaml"});
+  EXPECT_EQ(failed.code, 2);
+  EXPECT_TRUE(Contains(failed.err, "edits.yaml:2: ")) << failed.err;
+}
+
 TEST(ExportCommand, InfoTellsOfTheMap) {
   const ScratchFolder folder;
   MapRing(folder);
