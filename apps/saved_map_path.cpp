@@ -5,11 +5,17 @@
 #include <string_view>
 
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/log/ros2_bag_file.hpp"
 
 namespace masked_mapper {
 
 bool IsOutOrMap(const std::string& path) {
-  if (std::filesystem::is_directory(path)) return true;
+  // ROS 2 bags are folders and SQLite files as well.
+  if (std::filesystem::is_directory(path)) {
+    return std::filesystem::exists(std::filesystem::path(path) / "building.mmap") ||
+           !Ros2BagFile::IsBag(path);
+  }
+  if (std::filesystem::path(path).extension() == ".db3") return false;
   constexpr std::string_view kDatabase("SQLite format 3\0", 16);
   std::string start(kDatabase.size(), '\0');
   std::ifstream in(path, std::ios::binary);

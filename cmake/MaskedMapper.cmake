@@ -56,6 +56,8 @@ function(masked_mapper_room name)
     target_link_libraries(${target} INTERFACE ${ROOM_PUBLIC} ${ROOM_PRIVATE})
   endif()
   add_library(masked_mapper::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY masked_mapper_rooms ${target})
 endfunction()
 
 # masked_mapper_room_test(name lib...): one GoogleTest binary of tests/<name>/*_test.cpp.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/ros_messages.hpp"
 
+#include <fastcdr/Cdr.h>
+#include <fastcdr/exceptions/Exception.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,13 +18,16 @@ constexpr double kLargestCoordinate = 1e8;  // m
 constexpr std::size_t kMostBeams = 100000;
 constexpr std::size_t kLongestFrame = 256;
 
+std::string FrameId(std::string frame) {
+  return frame.empty() || frame.front() != '/' ? frame : frame.substr(1);
+}
+
 /// Reads fields one after the other; once one does not fit, nothing does, and good() is false.
-class FieldReader {
+class Ros1Fields {
  public:
-  FieldReader(const unsigned char* data, std::size_t size) : data_(data), left_(size) {}
+  Ros1Fields(const unsigned char* data, std::size_t size) : data_(data), left_(size) {}
 
   bool good() const { return good_; }
-  std::size_t left() const { return left_; }
 
   template <typename T>
   T Number() {
@@ -32,7 +38,10 @@ class FieldReader {
     return value;
   }
 
-  void Skip(std::size_t bytes) { Take(bytes); }
+  template <typename T>
+  void Skip(std::size_t count) {
+    Take(count * sizeof(T));
+  }
 
   /// The number of elements of at least `element_size` bytes each that follow.
   std::size_t Count(std::size_t element_size) {
@@ -56,6 +65,16 @@ class FieldReader {
     return values;
   }
 
+  RosHeader Header() {
+    RosHeader header;
+    Number<std::uint32_t>();  // seq
+    const auto seconds = Number<std::uint32_t>();
+    const auto nanoseconds = Number<std::uint32_t>();
+    header.stamp = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
+    header.frame_id = FrameId(String());
+    return header;
+  }
+
  private:
   const unsigned char* Take(std::size_t count) {
     if (!good_ || count > left_) {
@@ -73,34 +92,108 @@ class FieldReader {
   bool good_ = true;
 };
 
-std::string FrameId(std::string frame) {
-  return frame.empty() || frame.front() != '/' ? frame : frame.substr(1);
+/// The same of a ROS 2 message: CDR, of either byte order, each number aligned to its size. Counts
+/// are checked here before anything is allocated; the library checks single fields.
+class CdrFields {
+ public:
+  CdrFields(const unsigned char* data, std::size_t size)
+      : size_(size),
+        // Read only, but the library knows no such buffer.
+        buffer_(const_cast<char*>(reinterpret_cast<const char*>(data)), size),
+        cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
+    Try([this] { cdr_.read_encapsulation(); });
+  }
+
+  bool good() const { return good_; }
+
+  template <typename T>
+  T Number() {
+    T value{};
+    Try([this, &value] { cdr_ >> value; });
+    return good_ ? value : T{};
+  }
+
+  template <typename T>
+  void Skip(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) Number<T>();
+  }
+
+  std::size_t Count(std::size_t element_size) {
+    const auto count = Number<std::uint32_t>();
+    if (good_ && count > (size_ - cdr_.getSerializedDataLength()) / element_size) good_ = false;
+    return good_ ? count : 0;
+  }
+
+  std::string String() {
+    std::string text = Array<std::string>(Count(1), '\0');
+    while (!text.empty() && text.back() == '\0') text.pop_back();
+    if (text.size() > kLongestFrame) text.clear();
+    return text;
+  }
+
+  std::vector<float> Floats() { return Array<std::vector<float>>(Count(sizeof(float)), 0.0F); }
+
+  RosHeader Header() {
+    RosHeader header;
+    const auto seconds = Number<std::int32_t>();
+    const auto nanoseconds = Number<std::uint32_t>();
+    header.stamp = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
+    header.frame_id = FrameId(String());
+    return header;
+  }
+
+ private:
+  template <typename Read>
+  void Try(const Read& read) {
+    if (!good_) return;
+    try {
+      read();
+    } catch (const eprosima::fastcdr::exception::Exception&) {
+      good_ = false;
+    }
+  }
+
+  template <typename Values, typename T>
+  Values Array(std::size_t count, T empty) {
+    Values values(count, empty);
+    if (count > 0) Try([this, &values, count] { cdr_.deserializeArray(values.data(), count); });
+    return good_ ? values : Values{};
+  }
+
+  std::size_t size_;
+  eprosima::fastcdr::FastBuffer buffer_;
+  eprosima::fastcdr::Cdr cdr_;
+  bool good_ = true;
+};
+
+/// What `parse` makes of the fields in a message.
+template <typename Parse>
+auto InFields(const unsigned char* data, std::size_t size, MessageEncoding encoding,
+              const Parse& parse) {
+  if (encoding == MessageEncoding::kCdr) {
+    CdrFields fields(data, size);
+    return parse(&fields);
+  }
+  Ros1Fields fields(data, size);
+  return parse(&fields);
 }
 
-RosHeader Header(FieldReader* fields) {
-  RosHeader header;
-  fields->Number<std::uint32_t>();  // seq
-  const auto seconds = fields->Number<std::uint32_t>();
-  const auto nanoseconds = fields->Number<std::uint32_t>();
-  header.stamp = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
-  header.frame_id = FrameId(fields->String());
-  return header;
-}
-
-Eigen::Vector3d Vector(FieldReader* fields) {
-  const auto x = fields->Number<double>();
-  const auto y = fields->Number<double>();
-  const auto z = fields->Number<double>();
+template <typename Fields>
+Eigen::Vector3d Vector(Fields* fields) {
+  const auto x = fields->template Number<double>();
+  const auto y = fields->template Number<double>();
+  const auto z = fields->template Number<double>();
   return {x, y, z};
 }
 
 /// Position and quaternion; false when they are no transform.
-bool Transform(FieldReader* fields, Eigen::Isometry3d* transform) {
+template <typename Fields>
+bool Transform(Fields* fields, Eigen::Isometry3d* transform) {
   const Eigen::Vector3d translation = Vector(fields);
-  const auto x = fields->Number<double>();
-  const auto y = fields->Number<double>();
-  const auto z = fields->Number<double>();
-  const auto w = fields->Number<double>();
+  const auto x = fields->template Number<double>();
+  const auto y = fields->template Number<double>();
+  const auto z = fields->template Number<double>();
+  const auto w = fields->template Number<double>();
   const Eigen::Quaterniond rotation(w, x, y, z);
   const double norm = rotation.norm();
   if (!fields->good() || !(translation.cwiseAbs().maxCoeff() <= kLargestCoordinate) ||
@@ -121,15 +214,16 @@ double AngleAsMeant(float angle) {
 }
 
 /// The fields between the header and the ranges.
-RosLaserScan ScanBeforeRanges(FieldReader* fields) {
+template <typename Fields>
+RosLaserScan ScanBeforeRanges(Fields* fields) {
   RosLaserScan scan;
-  scan.header = Header(fields);
-  scan.angle_min = AngleAsMeant(fields->Number<float>());
-  fields->Number<float>();  // angle_max: the count and the increment say it
-  scan.angle_increment = AngleAsMeant(fields->Number<float>());
-  fields->Skip(2 * sizeof(float));  // time_increment, scan_time
-  scan.range_min = fields->Number<float>();
-  scan.range_max = fields->Number<float>();
+  scan.header = fields->Header();
+  scan.angle_min = AngleAsMeant(fields->template Number<float>());
+  fields->template Number<float>();  // angle_max: the count and the increment say it
+  scan.angle_increment = AngleAsMeant(fields->template Number<float>());
+  fields->template Skip<float>(2);  // time_increment, scan_time
+  scan.range_min = fields->template Number<float>();
+  scan.range_max = fields->template Number<float>();
   return scan;
 }
 
@@ -141,7 +235,8 @@ bool IsUsable(const RosLaserScan& scan) {
 }
 
 /// Echoes of all beams: an array of arrays.
-std::vector<std::vector<float>> Echoes(FieldReader* fields) {
+template <typename Fields>
+std::vector<std::vector<float>> Echoes(Fields* fields) {
   const std::size_t beams = fields->Count(sizeof(std::uint32_t));
   std::vector<std::vector<float>> echoes;
   if (beams > kMostBeams) return echoes;
@@ -159,85 +254,120 @@ float ChosenEcho(const std::vector<float>& ranges, const std::vector<float>& int
   return ranges[static_cast<std::size_t>(strongest - intensities.begin())];
 }
 
-}  // namespace
-
-std::optional<RosHeader> ParseHeader(const unsigned char* data, std::size_t size) {
-  FieldReader fields(data, size);
-  RosHeader header = Header(&fields);
-  if (!fields.good()) return std::nullopt;
+template <typename Fields>
+std::optional<RosHeader> ReadHeader(Fields* fields) {
+  RosHeader header = fields->Header();
+  if (!fields->good()) return std::nullopt;
   return header;
 }
 
-std::optional<RosLaserScan> ParseLaserScan(const unsigned char* data, std::size_t size) {
-  FieldReader fields(data, size);
-  RosLaserScan scan = ScanBeforeRanges(&fields);
-  scan.ranges = fields.Floats();
-  fields.Floats();  // intensities
-  if (!fields.good() || !IsUsable(scan)) return std::nullopt;
+template <typename Fields>
+std::optional<RosLaserScan> ReadLaserScan(Fields* fields) {
+  RosLaserScan scan = ScanBeforeRanges(fields);
+  scan.ranges = fields->Floats();
+  fields->Floats();  // intensities
+  if (!fields->good() || !IsUsable(scan)) return std::nullopt;
   return scan;
 }
 
-std::optional<RosLaserScan> ParseMultiEchoLaserScan(const unsigned char* data, std::size_t size,
-                                                    EchoChoice choice) {
-  FieldReader fields(data, size);
-  RosLaserScan scan = ScanBeforeRanges(&fields);
-  const std::vector<std::vector<float>> ranges = Echoes(&fields);
-  const std::vector<std::vector<float>> intensities = Echoes(&fields);
+template <typename Fields>
+std::optional<RosLaserScan> ReadMultiEchoLaserScan(Fields* fields, EchoChoice choice) {
+  RosLaserScan scan = ScanBeforeRanges(fields);
+  const std::vector<std::vector<float>> ranges = Echoes(fields);
+  const std::vector<std::vector<float>> intensities = Echoes(fields);
   for (std::size_t beam = 0; beam < ranges.size(); ++beam) {
     scan.ranges.push_back(
         ChosenEcho(ranges[beam],
                    beam < intensities.size() ? intensities[beam] : std::vector<float>{}, choice));
   }
-  if (!fields.good() || !IsUsable(scan)) return std::nullopt;
+  if (!fields->good() || !IsUsable(scan)) return std::nullopt;
   return scan;
 }
 
-std::optional<RosOdometry> ParseOdometry(const unsigned char* data, std::size_t size) {
-  FieldReader fields(data, size);
+template <typename Fields>
+std::optional<RosOdometry> ReadOdometry(Fields* fields) {
   RosOdometry odometry;
-  odometry.header = Header(&fields);
-  odometry.child_frame_id = FrameId(fields.String());
-  if (!Transform(&fields, &odometry.T_frame_child)) return std::nullopt;
+  odometry.header = fields->Header();
+  odometry.child_frame_id = FrameId(fields->String());
+  if (!Transform(fields, &odometry.T_frame_child)) return std::nullopt;
   return odometry;
 }
 
-std::optional<std::vector<RosTransform>> ParseTransforms(const unsigned char* data,
-                                                         std::size_t size) {
-  FieldReader fields(data, size);
-  constexpr std::size_t kLeastTransform = 12 + 4 + 4 + 56;  // empty names
-  const std::size_t count = fields.Count(kLeastTransform);
+template <typename Fields>
+std::optional<std::vector<RosTransform>> ReadTransforms(Fields* fields) {
+  constexpr std::size_t kLeastTransform = 8 + 4 + 4 + 56;  // empty names
+  const std::size_t count = fields->Count(kLeastTransform);
   std::vector<RosTransform> transforms;
   transforms.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     RosTransform transform;
-    transform.header = Header(&fields);
-    transform.child_frame_id = FrameId(fields.String());
-    if (!Transform(&fields, &transform.T_frame_child)) return std::nullopt;
+    transform.header = fields->Header();
+    transform.child_frame_id = FrameId(fields->String());
+    if (!Transform(fields, &transform.T_frame_child)) return std::nullopt;
     transforms.push_back(std::move(transform));
   }
-  if (!fields.good()) return std::nullopt;
+  if (!fields->good()) return std::nullopt;
   return transforms;
 }
 
-std::optional<RosImu> ParseImu(const unsigned char* data, std::size_t size) {
-  FieldReader fields(data, size);
+template <typename Fields>
+std::optional<RosImu> ReadImu(Fields* fields) {
   RosImu imu;
-  imu.header = Header(&fields);
-  constexpr std::size_t kCovariance = 9 * sizeof(double);
-  fields.Skip(4 * sizeof(double) + kCovariance);  // orientation
-  fields.Skip(3 * sizeof(double) + kCovariance);  // angular velocity
-  imu.acceleration = Vector(&fields);
-  if (!fields.good() || !(imu.acceleration.cwiseAbs().maxCoeff() <= 1e6)) return std::nullopt;
+  imu.header = fields->Header();
+  constexpr std::size_t kCovariance = 9;
+  fields->template Skip<double>(4 + kCovariance);  // orientation
+  fields->template Skip<double>(3 + kCovariance);  // angular velocity
+  imu.acceleration = Vector(fields);
+  if (!fields->good() || !(imu.acceleration.cwiseAbs().maxCoeff() <= 1e6)) return std::nullopt;
   return imu;
 }
 
-std::optional<RosFluidPressure> ParseFluidPressure(const unsigned char* data, std::size_t size) {
-  FieldReader fields(data, size);
+template <typename Fields>
+std::optional<RosFluidPressure> ReadFluidPressure(Fields* fields) {
   RosFluidPressure pressure;
-  pressure.header = Header(&fields);
-  pressure.pressure_pa = fields.Number<double>();
-  if (!fields.good() || !(std::abs(pressure.pressure_pa) <= 1e9)) return std::nullopt;
+  pressure.header = fields->Header();
+  pressure.pressure_pa = fields->template Number<double>();
+  if (!fields->good() || !(std::abs(pressure.pressure_pa) <= 1e9)) return std::nullopt;
   return pressure;
+}
+
+}  // namespace
+
+std::optional<RosHeader> ParseHeader(const unsigned char* data, std::size_t size,
+                                     MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadHeader(fields); });
+}
+
+std::optional<RosLaserScan> ParseLaserScan(const unsigned char* data, std::size_t size,
+                                           MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadLaserScan(fields); });
+}
+
+std::optional<RosLaserScan> ParseMultiEchoLaserScan(const unsigned char* data, std::size_t size,
+                                                    EchoChoice choice, MessageEncoding encoding) {
+  return InFields(data, size, encoding,
+                  [choice](auto* fields) { return ReadMultiEchoLaserScan(fields, choice); });
+}
+
+std::optional<RosOdometry> ParseOdometry(const unsigned char* data, std::size_t size,
+                                         MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadOdometry(fields); });
+}
+
+std::optional<std::vector<RosTransform>> ParseTransforms(const unsigned char* data,
+                                                         std::size_t size,
+                                                         MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadTransforms(fields); });
+}
+
+std::optional<RosImu> ParseImu(const unsigned char* data, std::size_t size,
+                               MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadImu(fields); });
+}
+
+std::optional<RosFluidPressure> ParseFluidPressure(const unsigned char* data, std::size_t size,
+                                                   MessageEncoding encoding) {
+  return InFields(data, size, encoding, [](auto* fields) { return ReadFluidPressure(fields); });
 }
 
 }  // namespace masked_mapper

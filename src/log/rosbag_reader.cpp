@@ -19,6 +19,7 @@
 #include "masked_mapper/log/odometry_at_scans.hpp"
 #include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
+#include "masked_mapper/log/ros2_bag_file.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
 #include "masked_mapper/log/scan_merger.hpp"
 #include "masked_mapper/log/stamp_mender.hpp"
@@ -36,7 +37,7 @@ enum class Kind { kScan, kMultiEcho, kOdometry, kTransforms, kImu, kPressure };
 
 struct MessageType {
   const char* type;
-  const char* md5sum;
+  const char* md5sum;  ///< empty: of ROS 2
   Kind kind;
 };
 constexpr MessageType kMessageTypes[] = {
@@ -47,6 +48,12 @@ constexpr MessageType kMessageTypes[] = {
     {"tf/tfMessage", "94810edda583a504dfda3829e70d7eec", Kind::kTransforms},
     {"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2", Kind::kImu},
     {"sensor_msgs/FluidPressure", "804dc5cea1c5306d6a2eb80b9833befe", Kind::kPressure},
+    {"sensor_msgs/msg/LaserScan", "", Kind::kScan},
+    {"sensor_msgs/msg/MultiEchoLaserScan", "", Kind::kMultiEcho},
+    {"nav_msgs/msg/Odometry", "", Kind::kOdometry},
+    {"tf2_msgs/msg/TFMessage", "", Kind::kTransforms},
+    {"sensor_msgs/msg/Imu", "", Kind::kImu},
+    {"sensor_msgs/msg/FluidPressure", "", Kind::kPressure},
 };
 
 std::optional<Kind> KindOf(const BagConnection& connection) {
@@ -183,7 +190,7 @@ std::optional<std::size_t> StreamOf(const BagPlan& plan, const BagConnection& co
 /// StreamOf for every connection, so that messages need no names compared.
 class Streams {
  public:
-  Streams(const BagPlan& plan, const BagFile& bag) : plan_(plan), bag_(bag) {}
+  Streams(const BagPlan& plan, const RosBag& bag) : plan_(plan), bag_(bag) {}
 
   std::optional<std::size_t> Find(std::uint32_t connection) {
     const auto known = streams_.find(connection);
@@ -195,15 +202,15 @@ class Streams {
 
  private:
   const BagPlan& plan_;
-  const BagFile& bag_;
+  const RosBag& bag_;
   std::map<std::uint32_t, std::optional<std::size_t>> streams_;
 };
 
 std::optional<RosLaserScan> ParseScan(Kind kind, const BagMessage& message, bool strongest_echo) {
-  return kind == Kind::kScan ? ParseLaserScan(message.data, message.size)
-                             : ParseMultiEchoLaserScan(
-                                   message.data, message.size,
-                                   strongest_echo ? EchoChoice::kStrongest : EchoChoice::kFirst);
+  if (kind == Kind::kScan) return ParseLaserScan(message.data, message.size, message.encoding);
+  return ParseMultiEchoLaserScan(message.data, message.size,
+                                 strongest_echo ? EchoChoice::kStrongest : EchoChoice::kFirst,
+                                 message.encoding);
 }
 
 bool IsLimit(double range_max) {
@@ -216,7 +223,7 @@ class BagLook {
   BagLook(const LogOptions& options, BagPlan plan)
       : options_(options), plan_(std::move(plan)), scan_frames_(plan_.scanners) {}
 
-  BagPlan Run(const std::string& path, BagFile* bag) {
+  BagPlan Run(const std::string& path, RosBag* bag) {
     Streams streams(plan_, *bag);
     std::optional<double> begin;
     while (const std::optional<BagMessage> message = bag->Next()) {
@@ -244,13 +251,13 @@ class BagLook {
         }
         break;
       case Kind::kOdometry:
-        if (const auto odometry = ParseOdometry(message.data, message.size)) {
+        if (const auto odometry = ParseOdometry(message.data, message.size, message.encoding)) {
           NoteHeader(stream, message, odometry->header);
           if (!child_frame_) child_frame_ = odometry->child_frame_id;
         }
         break;
       case Kind::kTransforms:
-        if (const auto transforms = ParseTransforms(message.data, message.size)) {
+        if (const auto transforms = ParseTransforms(message.data, message.size, message.encoding)) {
           for (const RosTransform& transform : *transforms) {
             frames_.Add(transform.header.frame_id, transform.child_frame_id,
                         transform.T_frame_child);
@@ -258,13 +265,14 @@ class BagLook {
         }
         break;
       case Kind::kImu:
-        if (const auto imu = ParseImu(message.data, message.size)) {
+        if (const auto imu = ParseImu(message.data, message.size, message.encoding)) {
           NoteHeader(stream, message, imu->header);
           imu_frame_ = imu->header.frame_id;
         }
         break;
       case Kind::kPressure:
-        if (const auto pressure = ParseFluidPressure(message.data, message.size)) {
+        if (const auto pressure =
+                ParseFluidPressure(message.data, message.size, message.encoding)) {
           NoteHeader(stream, message, pressure->header);
         }
         break;
@@ -416,7 +424,7 @@ class InOrder {
 /// Messages in, observations in order out; the counting.
 class MessageReader {
  public:
-  MessageReader(const LogOptions& options, const BagPlan& plan, const BagFile& bag)
+  MessageReader(const LogOptions& options, const BagPlan& plan, const RosBag& bag)
       : options_(options), plan_(plan), bag_(bag), streams_(plan, bag), in_order_(plan.scanners) {
     statistics_.max_range = plan.max_range;
   }
@@ -489,7 +497,7 @@ class MessageReader {
         return true;
       }
       case Kind::kOdometry: {
-        const auto odometry = ParseOdometry(message.data, message.size);
+        const auto odometry = ParseOdometry(message.data, message.size, message.encoding);
         if (!odometry) return false;
         mender_.Add(OdometryReading{StampOf(stream, message, odometry->header),
                                     SeenFromAbove(odometry->T_frame_child).T_robot_laser},
@@ -499,7 +507,7 @@ class MessageReader {
       case Kind::kTransforms:
         return TakeTransforms(stream, message);
       case Kind::kImu: {
-        const auto imu = ParseImu(message.data, message.size);
+        const auto imu = ParseImu(message.data, message.size, message.encoding);
         if (!imu) return false;
         mender_.Add(AccelerationReading{StampOf(stream, message, imu->header),
                                         plan_.R_robot_imu * imu->acceleration},
@@ -507,7 +515,7 @@ class MessageReader {
         return true;
       }
       case Kind::kPressure: {
-        const auto pressure = ParseFluidPressure(message.data, message.size);
+        const auto pressure = ParseFluidPressure(message.data, message.size, message.encoding);
         if (!pressure) return false;
         mender_.Add(
             PressureReading{StampOf(stream, message, pressure->header), pressure->pressure_pa},
@@ -519,7 +527,7 @@ class MessageReader {
   }
 
   bool TakeTransforms(std::size_t stream, const BagMessage& message) {
-    const auto transforms = ParseTransforms(message.data, message.size);
+    const auto transforms = ParseTransforms(message.data, message.size, message.encoding);
     if (!transforms) return false;
     if (plan_.odometry_frame.empty()) return true;
     for (const RosTransform& transform : *transforms) {
@@ -585,7 +593,7 @@ class MessageReader {
 
   const LogOptions& options_;
   const BagPlan& plan_;
-  const BagFile& bag_;
+  const RosBag& bag_;
   Streams streams_;
   StampMender mender_;
   OdometryAtScans at_scans_;
@@ -595,15 +603,20 @@ class MessageReader {
   bool finished_ = false;
 };
 
+std::unique_ptr<RosBag> OpenBag(const std::string& path) {
+  if (Ros2BagFile::IsBag(path)) return std::make_unique<Ros2BagFile>(path);
+  return std::make_unique<BagFile>(path);
+}
+
 void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& plan,
              const ReadAhead::Sink& sink) {
-  BagFile bag(path);
-  MessageReader reader(options, plan, bag);
+  const std::unique_ptr<RosBag> bag = OpenBag(path);
+  MessageReader reader(options, plan, *bag);
   ObservationBatch batch;
   std::size_t messages = 0;
   bool more = true;
   while (more) {
-    const std::optional<BagMessage> message = bag.Next();
+    const std::optional<BagMessage> message = bag->Next();
     more = message.has_value();
     if (message) reader.Add(*message);
     if (!more) reader.Finish();
@@ -614,7 +627,7 @@ void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& 
                       ++messages % (8 * ObservationBatch::kSize) == 0;
     if (!full && more) continue;
     batch.statistics = reader.Statistics();
-    batch.progress = bag.Progress();
+    batch.progress = bag->Progress();
     if (!sink(std::exchange(batch, {}))) return;
   }
 }
@@ -622,14 +635,14 @@ void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& 
 }  // namespace
 
 std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options) {
-  BagFile bag(path);
-  if (!bag.IsIndexed()) {
-    while (bag.Next()) {
+  const std::unique_ptr<RosBag> bag = OpenBag(path);
+  if (!bag->IsIndexed()) {
+    while (bag->Next()) {
     }  // the connections are wherever they are
-    bag.Rewind();
+    bag->Rewind();
   }
-  BagPlan plan = TopicChoice(path, bag.Connections()).Choose(options);
-  plan = BagLook(options, std::move(plan)).Run(path, &bag);
+  BagPlan plan = TopicChoice(path, bag->Connections()).Choose(options);
+  plan = BagLook(options, std::move(plan)).Run(path, bag.get());
   LogStatistics statistics;
   statistics.max_range = plan.max_range;
   return std::make_unique<ReadAhead>(

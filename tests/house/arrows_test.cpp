@@ -126,6 +126,7 @@ TEST(Arrows, EachPackageStopsAtItsDoor) {
       {"octomap/", {"rendering", "export"}, 1},
       {"yaml-cpp/", {"mapping"}, 1},
       {"sqlite3.h", {"map_file", "log"}, 1},
+      {"fastcdr/", {"log"}, 1},
       {"pcl/io/", {"export"}, 1},
       {"CLI/", {"apps"}, kAny},
   };

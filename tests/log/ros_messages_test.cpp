@@ -13,7 +13,8 @@ namespace {
 
 template <typename Parse>
 auto On(const Parse& parse, const std::string& bytes) {
-  return parse(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  return parse(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
+               MessageEncoding::kRos1);
 }
 
 std::string PoseBytes(double x, double y, double yaw) {
@@ -64,10 +65,11 @@ TEST(RosMessagesTest, AHostileCountAllocatesNothing) {
   const std::size_t count_at = RosHeaderBytes(9, "/laser").size() + 28;
   scan.replace(count_at, 4, Raw(std::uint32_t{0xffffffff}));
   EXPECT_FALSE(On(ParseLaserScan, scan));
-  EXPECT_FALSE(
-      On([](const unsigned char* data,
-            std::size_t size) { return ParseMultiEchoLaserScan(data, size, EchoChoice::kFirst); },
-         scan));
+  EXPECT_FALSE(On(
+      [](const unsigned char* data, std::size_t size, MessageEncoding /*encoding*/) {
+        return ParseMultiEchoLaserScan(data, size, EchoChoice::kFirst);
+      },
+      scan));
   EXPECT_FALSE(On(ParseTransforms, Raw(std::uint32_t{0xffffffff}) + std::string(200, '\0')));
   std::string long_frame = Raw(std::uint32_t{0}) + Raw(std::uint32_t{0}) + Raw(std::uint32_t{0}) +
                            Raw(std::uint32_t{0xfffffff0}) + "x";

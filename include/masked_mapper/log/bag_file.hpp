@@ -6,52 +6,32 @@
 // The tests hold this reader against it.)
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "masked_mapper/log/ros_bag.hpp"
+
 namespace masked_mapper {
 
-struct BagConnection {
-  std::string topic;
-  std::string type;  ///< "sensor_msgs/LaserScan"
-  std::string md5sum;
-};
-
-struct BagMessage {
-  std::uint32_t connection = 0;
-  double time = 0.0;                    ///< s, when it was recorded
-  const unsigned char* data = nullptr;  ///< serialised; valid until the next call
-  std::size_t size = 0;
-};
-
-class BagFile {
+class BagFile final : public RosBag {
  public:
   /// Whether a file begins as a bag of any version does. False also when it cannot be opened.
   static bool IsBag(const std::string& path);
 
   /// Throws InputError: cannot be opened, obsolete version, encrypted, no bag.
   explicit BagFile(const std::string& path);
-  ~BagFile();
+  ~BagFile() override;
 
-  /// The next message in the order of recording; its connection is known. Empty at the end.
-  std::optional<BagMessage> Next();
-  /// Back to the first message. What is known of connections stays.
-  void Rewind();
-
-  /// By id. Complete from the start when the bag was closed properly, else as far as it was read.
-  const std::map<std::uint32_t, BagConnection>& Connections() const;
-  /// Whether the bag was closed properly: it has its index where it says.
-  bool IsIndexed() const;
-  /// The recording was not closed properly, or the file ends before its records do.
-  bool Truncated() const;
-  /// Records and chunks skipped because they make no sense.
-  std::uint64_t Damaged() const;
-  /// Share of the file consumed, 0 to 1.
-  double Progress() const;
+  std::optional<BagMessage> Next() override;
+  void Rewind() override;
+  const std::map<std::uint32_t, BagConnection>& Connections() const override;
+  bool IsIndexed() const override;
+  bool Truncated() const override;
+  std::uint64_t Damaged() const override;
+  double Progress() const override;
 
  private:
   class Impl;

@@ -62,7 +62,7 @@ class LogReader {
   virtual double Progress() const = 0;
 };
 
-/// Opens a log by its content (CARMEN text, plain or gzip; ROS 1 bag).
+/// Opens a log by its content (CARMEN text, plain or gzip; ROS 1 or ROS 2 bag).
 /// Throws InputError when it cannot be read as a log at all: no such file, a directory, empty,
 /// binary.
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogOptions& options);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The few ROS 1 messages that a map is made of, from their serialised form (little-endian, fields
-// in the order of the .msg files, arrays and strings with their length before them). Only what is
-// used is kept. Every length is checked against the bytes that are there.
+// The few ROS messages that a map is made of, from their serialised form: ROS 1 (little-endian,
+// fields in the order of the .msg files, arrays and strings with their length before them) or ROS 2
+// (the same fields as CDR). Only what is used is kept. Every length is checked against the bytes
+// that are there.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -54,20 +55,29 @@ struct RosFluidPressure {
   double pressure_pa = 0.0;
 };
 
+/// How messages are written: by ROS 1, or as CDR (OMG DDS-XTypes 1.3, 7.4; plain, version 1).
+enum class MessageEncoding { kRos1, kCdr };
+
 /// Which echo of a beam stands for it.
 enum class EchoChoice { kFirst, kStrongest };
 
 /// All are empty when the bytes are not such a message, or hold numbers that are none.
-std::optional<RosLaserScan> ParseLaserScan(const unsigned char* data, std::size_t size);
-std::optional<RosLaserScan> ParseMultiEchoLaserScan(const unsigned char* data, std::size_t size,
-                                                    EchoChoice choice);
-std::optional<RosOdometry> ParseOdometry(const unsigned char* data, std::size_t size);
-std::optional<std::vector<RosTransform>> ParseTransforms(const unsigned char* data,
-                                                         std::size_t size);
-std::optional<RosImu> ParseImu(const unsigned char* data, std::size_t size);
-std::optional<RosFluidPressure> ParseFluidPressure(const unsigned char* data, std::size_t size);
+std::optional<RosLaserScan> ParseLaserScan(const unsigned char* data, std::size_t size,
+                                           MessageEncoding encoding = MessageEncoding::kRos1);
+std::optional<RosLaserScan> ParseMultiEchoLaserScan(
+    const unsigned char* data, std::size_t size, EchoChoice choice,
+    MessageEncoding encoding = MessageEncoding::kRos1);
+std::optional<RosOdometry> ParseOdometry(const unsigned char* data, std::size_t size,
+                                         MessageEncoding encoding = MessageEncoding::kRos1);
+std::optional<std::vector<RosTransform>> ParseTransforms(
+    const unsigned char* data, std::size_t size, MessageEncoding encoding = MessageEncoding::kRos1);
+std::optional<RosImu> ParseImu(const unsigned char* data, std::size_t size,
+                               MessageEncoding encoding = MessageEncoding::kRos1);
+std::optional<RosFluidPressure> ParseFluidPressure(
+    const unsigned char* data, std::size_t size, MessageEncoding encoding = MessageEncoding::kRos1);
 
 /// The header that all of them but TFMessage begin with.
-std::optional<RosHeader> ParseHeader(const unsigned char* data, std::size_t size);
+std::optional<RosHeader> ParseHeader(const unsigned char* data, std::size_t size,
+                                     MessageEncoding encoding = MessageEncoding::kRos1);
 
 }  // namespace masked_mapper

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ROS 1 bags as robot logs: LaserScan and MultiEchoLaserScan of any field of view (several scanners
-// as one, see scan_merger.hpp), Odometry or tf, Imu, FluidPressure.
+// ROS 1 and ROS 2 bags as robot logs: LaserScan and MultiEchoLaserScan of any field of view
+// (several scanners as one, see scan_merger.hpp), Odometry or tf, Imu, FluidPressure.
 //
 // A topic is found by its type when there is one of it, and named by an option when there are
 // several. Where scanners sit comes from tf: from the frame that odometry moves (its child frame,
@@ -16,7 +16,7 @@
 
 namespace masked_mapper {
 
-/// Throws InputError: not a bag of version 2.0, no scan in it, several topics to choose from, a
+/// Throws InputError: not a bag of version 2.0 or of ROS 2 (.db3), no scan in it, several topics to choose from, a
 /// topic that is not there.
 std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options);
 

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Packages without a CMake package worth using. Installed beside the program's own, so that what is
+# exported names targets and no paths of the machine that built it.
+
+# `find_package(PCL)` pulls VTK in through `io` and costs seconds at configure time; of PCL the point
+# types and the file formats are used, so the libraries are found by name.
+find_path(PCL_INCLUDE_DIR pcl/point_types.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.12 REQUIRED)
+foreach(component common io)
+  if(NOT TARGET pcl_${component}_only)
+    find_library(PCL_${component}_LIBRARY pcl_${component} REQUIRED)
+    add_library(pcl_${component}_only INTERFACE IMPORTED)
+    target_include_directories(pcl_${component}_only SYSTEM INTERFACE ${PCL_INCLUDE_DIR})
+    target_link_libraries(pcl_${component}_only INTERFACE ${PCL_${component}_LIBRARY} Eigen3::Eigen)
+  endif()
+endforeach()
+
+if(NOT TARGET lz4_only)
+  find_library(LZ4_LIBRARY lz4 REQUIRED)
+  add_library(lz4_only INTERFACE IMPORTED)
+  target_link_libraries(lz4_only INTERFACE ${LZ4_LIBRARY})
+endif()
