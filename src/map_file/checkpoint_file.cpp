@@ -178,6 +178,7 @@ class CheckpointFile::Impl {
   void Write(const CheckpointState& state, const MappingResult& map) {
     const std::vector<Node>& nodes = map.graph.nodes();
     Transaction transaction(database_);
+    if (starts_over_) database_.Run("DELETE FROM pieces");
     WritePiece(PieceKind::kPoses, PackPoses(map.trajectory, poses_));
     WritePiece(PieceKind::kScans, PackScans(map.kept_scans, scans_));
     WritePiece(PieceKind::kPoints, PackPoints(nodes, nodes_));
@@ -188,6 +189,12 @@ class CheckpointFile::Impl {
     poses_ = map.trajectory.size();
     scans_ = map.kept_scans.size();
     nodes_ = nodes.size();
+    starts_over_ = false;
+  }
+
+  void StartOver() {
+    poses_ = scans_ = nodes_ = 0;
+    starts_over_ = true;
   }
 
  private:
@@ -210,6 +217,7 @@ class CheckpointFile::Impl {
   std::size_t poses_ = 0;
   std::size_t scans_ = 0;
   std::size_t nodes_ = 0;
+  bool starts_over_ = false;
 };
 
 CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, double interval_s,
@@ -288,6 +296,10 @@ void CheckpointFile::Save(const CheckpointState& state, const MappingResult& map
   const auto rest =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(took) / kShare);
   if (due_ != Clock::time_point::max()) due_ = Clock::now() + std::max(interval_, rest);
+}
+
+void CheckpointFile::StartOver() {
+  if (impl_) impl_->StartOver();
 }
 
 void CheckpointFile::Remove() {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/floor_joining.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
@@ -51,7 +52,11 @@ class LogDrive {
  public:
   LogDrive(const std::string& path, const std::string& mask, const Options& options,
            ProgressSink& progress, CheckpointStore* checkpoints)
-      : path_(path), options_(options), progress_(progress), checkpoints_(checkpoints) {
+      : path_(path),
+        mask_(mask),
+        options_(options),
+        progress_(progress),
+        checkpoints_(checkpoints) {
     std::optional<Checkpoint> checkpoint;
     if (checkpoints_ != nullptr) checkpoint = checkpoints_->Load();
     std::string mapper_bytes;
@@ -71,8 +76,7 @@ class LogDrive {
     settled_ = options_;
     settled_.matcher.threads = ThreadCount(options_.threads);
     settled_.motion.source = SettleMotionSource(path_, options_.motion.source, survey_);
-    mapper_.emplace(mask, settled_, survey_.floors);
-    log_ = OpenLog(path_, options_.log);
+    Begin();
     if (checkpoint) {
       mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));
       Skip(checkpoint->state.observations);
@@ -81,17 +85,12 @@ class LogDrive {
 
   MappingResult Map() {
     progress_.Stage("mapping");
-    while (const std::optional<Observation> observation = Next()) {
-      mapper_->Observe(*observation);
-      if (!std::holds_alternative<LaserScan>(*observation)) continue;
-      ++scans_;
-      try {
-        progress_.Progress(log_->Progress(), scans_);
-      } catch (...) {  // an interrupt: what is done is kept, unless it is next to nothing
-        if (has_saved_ || IsDue()) SaveCheckpoint();
-        throw;
-      }
-      if (IsDue()) SaveCheckpoint();
+    DriveThrough();
+    if (HasUnknownFloors(survey_.floors) && FloorsWereJoined()) {
+      progress_.Stage("mapping, floors joined");
+      Begin();
+      if (checkpoints_ != nullptr) checkpoints_->StartOver();
+      DriveThrough();
     }
     MappingResult result = mapper_->Finish();
     result.log = log_->Statistics();
@@ -106,6 +105,37 @@ class LogDrive {
   }
 
  private:
+  void Begin() {
+    mapper_.emplace(mask_, settled_, survey_.floors);
+    log_ = OpenLog(path_, options_.log);
+    observations_ = scans_ = 0;
+  }
+
+  // With a floor met again as one level, its visits are matched with each other like any others;
+  // that takes another drive through the log.
+  bool FloorsWereJoined() {
+    const FloorJoining joining = JoinFloors(mapper_->result(), survey_.floors, settled_);
+    if (!joining.any_joined) return false;
+    survey_.floors = joining.floors;
+    survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());
+    return true;
+  }
+
+  void DriveThrough() {
+    while (const std::optional<Observation> observation = Next()) {
+      mapper_->Observe(*observation);
+      if (!std::holds_alternative<LaserScan>(*observation)) continue;
+      ++scans_;
+      try {
+        progress_.Progress(log_->Progress(), scans_);
+      } catch (...) {  // an interrupt: what is done is kept, unless it is next to nothing
+        if (has_saved_ || IsDue()) SaveCheckpoint();
+        throw;
+      }
+      if (IsDue()) SaveCheckpoint();
+    }
+  }
+
   std::optional<Observation> Next() {
     const StageTimer timer(read_seconds_);
     std::optional<Observation> observation = log_->Next();
@@ -142,6 +172,7 @@ class LogDrive {
   }
 
   std::string path_;
+  std::string mask_;
   Options options_;
   Options settled_;
   ProgressSink& progress_;

@@ -152,5 +152,24 @@ INSTANTIATE_TEST_SUITE_P(EvaluateCommand, CutLog,
                            return std::string(info.param.source) + "_" + info.param.view;
                          });
 
+TEST(EvaluateCommand, ByLidarAndWheelsAloneAFloorMetAgainIsOneFloor) {
+  const ScratchFolder folder;
+  const std::string log = folder / "office.log";
+  ASSERT_EQ(
+      RunProgram({"simulate", "--building", "office", "-o", log, "--quiet", "--without-pressure"})
+          .code,
+      0);
+  const Ran mapped = RunProgram({"map", log, "-o", folder / "out"});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  EXPECT_TRUE(Contains(mapped.err, "floor 0 was met again")) << mapped.err;
+  const Ran evaluated = RunProgram(
+      {"evaluate", folder / "out", "--truth", folder / "office.log.truth.tum", "--json"});
+  ASSERT_EQ(evaluated.code, 0) << evaluated.err;
+  const nlohmann::json json = nlohmann::json::parse(evaluated.out);
+  EXPECT_EQ(json.at("floors").at("right"), 1.0);
+  EXPECT_EQ(json.at("closures").at("false"), 0);
+  EXPECT_LT(json.at("trajectory").at("max_m"), 0.2) << "m";
+}
+
 }  // namespace
 }  // namespace masked_mapper

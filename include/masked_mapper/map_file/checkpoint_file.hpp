@@ -37,6 +37,7 @@ class CheckpointFile : public CheckpointStore {
   std::optional<Checkpoint> Load() override;
   bool IsDue() override;
   void Save(const CheckpointState& state, const MappingResult& map) override;
+  void StartOver() override;
 
   /// Whether Load() found or Save() left something to go on from.
   bool HasCheckpoint() const { return has_checkpoint_; }

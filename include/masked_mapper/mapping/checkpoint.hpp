@@ -46,6 +46,8 @@ class CheckpointStore {
   /// before stay good until all of it is kept. Throws std::runtime_error when that fails: mapping
   /// then goes on without checkpoints.
   virtual void Save(const CheckpointState& state, const MappingResult& map) = 0;
+  /// Mapping begins anew: the next Save() replaces all that is kept.
+  virtual void StartOver() = 0;
 };
 
 /// A run of grown parts as bytes, and back. A damaged one throws StateError.

@@ -35,6 +35,17 @@ struct AmbiguityOptions {
   double max_sigma_deg = 3.0;
 };
 
+/// When two visits of floors that no sensor tells apart are one floor (mapping/floor_joining.hpp).
+struct FloorJoinOptions {
+  double reach_m = 4.0;    ///< from a node to its neighbours on the older floor
+  double sigma_m = 1.0;    ///< of where motion through the rides puts them
+  double sigma_deg = 4.0;  ///< and of the heading
+  double agree_m = 0.3;    ///< between places that are shifted alike
+  double agree_deg = 2.0;
+  int min_places = 3;      ///< that agree
+  double min_share = 0.6;  ///< of the places that have a neighbour
+};
+
 struct Options {
   LogOptions log;
   MotionOptions motion;
@@ -45,6 +56,7 @@ struct Options {
   MatcherOptions matcher;
   SubmapOptions submaps;
   AmbiguityOptions ambiguity;
+  FloorJoinOptions floor_joins;
   ValidatorOptions validator;
   UpdateOptions optimizer;
   AuditOptions audit;
