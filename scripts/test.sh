@@ -9,6 +9,7 @@
 #   sanitize   address and undefined-behaviour build and all tests
 # Beside these, on request only:
 #   coverage   a build that counts lines, all tests, a table by gcovr
+#   package    Debian packages; the unpacked program runs, a project builds against the library
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -52,10 +53,12 @@ part_coverage() {
   gcovr --root . --filter include/ --filter src/ build/coverage
 }
 
+part_package() { scripts/package.sh; }
+
 for part in "${parts[@]}"; do
   case $part in
-    setup|release|format|tidy|sanitize|coverage) ;;
-    -h|--help) sed -n '3,11s/^# //p' "$0"; exit 0 ;;
+    setup|release|format|tidy|sanitize|coverage|package) ;;
+    -h|--help) sed -n '3,12s/^# //p' "$0"; exit 0 ;;
     *) echo "test.sh: unknown part '$part' (try --help)" >&2; exit 2 ;;
   esac
 done

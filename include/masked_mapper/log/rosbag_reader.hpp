@@ -16,8 +16,8 @@
 
 namespace masked_mapper {
 
-/// Throws InputError: not a bag of version 2.0 or of ROS 2 (.db3), no scan in it, several topics to choose from, a
-/// topic that is not there.
+/// Throws InputError: not a bag of version 2.0 or of ROS 2 (.db3), no scan in it, several topics to
+/// choose from, a topic that is not there.
 std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options);
 
 }  // namespace masked_mapper
