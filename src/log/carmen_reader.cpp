@@ -136,8 +136,8 @@ class LineReader {
           "line " + std::to_string(statistics_.lines) + ": " + error.reason;
     }
   }
-  void Handle(OdometryReading&& reading) { Take(std::move(reading), &statistics_.odometry); }
-  void Handle(PressureReading&& reading) { Take(std::move(reading), &statistics_.pressure); }
+  void Handle(const OdometryReading& reading) { Take(reading, &statistics_.odometry); }
+  void Handle(const PressureReading& reading) { Take(reading, &statistics_.pressure); }
   void Handle(AccelerationReading&& reading) {
     Take(std::move(reading), &statistics_.acceleration);
   }

@@ -546,7 +546,7 @@ class MessageReader {
     LaserScan scan;
     scan.stamp = stamp;
     scan.T_robot_laser = mount.T_robot_laser;
-    const double sense = mount.upside_down ? -1.0 : 1.0;
+    const double sense = mount.upside_down != options_.upside_down ? -1.0 : 1.0;
     scan.first_angle = sense * ros_scan.angle_min;
     scan.angle_step = sense * ros_scan.angle_increment;
     const bool own_limit = plan_.no_return == 0.0F && IsLimit(ros_scan.range_max);

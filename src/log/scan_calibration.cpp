@@ -110,8 +110,9 @@ LaserScan ScanCalibration::Apply(CarmenScan scan, std::uint64_t* invalid_ranges)
   LaserScan result;
   result.stamp = scan.stamp;
   const BeamGeometry geometry = Geometry(scan);
-  result.first_angle = geometry.first_angle;
-  result.angle_step = geometry.angle_step;
+  const double sense = upside_down_ ? -1.0 : 1.0;
+  result.first_angle = sense * geometry.first_angle;
+  result.angle_step = sense * geometry.angle_step;
   const std::size_t kind = scan.is_flaser ? 1 : 0;
   result.T_robot_laser = T_robot_laser_[kind];
   result.T_odom_robot = odometry_is_lasers_[kind]
@@ -212,6 +213,7 @@ Pose2 CalibrationFinder::LaserOnRobot(const Poses& poses) const {
 ScanCalibration CalibrationFinder::Find() const {
   ScanCalibration result;
   result.min_range_ = options_.min_range;
+  result.upside_down_ = options_.upside_down;
   result.flaser_is_twin_ = 2 * twins_ > scans_ / 2;
   result.field_of_view_ = options_.field_of_view_deg > 0.0 ? DegToRad(options_.field_of_view_deg)
                                                            : param_field_of_view_;

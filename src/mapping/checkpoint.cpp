@@ -59,9 +59,9 @@ void Serialize(Archive& archive, FloorInterval& interval) {
 
 template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
-  archive(survey.scans, survey.has_odometry, survey.median_travel_m, survey.median_turn_rad,
-          survey.median_period_s, survey.floors.levels, survey.floors.intervals,
-          survey.floor_source, survey.warnings);
+  archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
+          survey.median_turn_rad, survey.median_period_s, survey.floors.levels,
+          survey.floors.intervals, survey.floor_source, survey.warnings);
 }
 
 namespace {

@@ -75,7 +75,7 @@ class LogDrive {
     }
     settled_ = options_;
     settled_.matcher.threads = ThreadCount(options_.threads);
-    settled_.motion.source = SettleMotionSource(path_, options_.motion.source, survey_);
+    settled_.motion.source = SettleMotionSource(path_, options_.motion, survey_);
     Begin();
     if (checkpoint) {
       mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));

@@ -73,7 +73,7 @@ std::string NearestKey(const std::string& unknown, const std::vector<OptionEntry
   std::vector<std::string> keys;
   keys.reserve(table.size());
   for (const OptionEntry& entry : table) keys.push_back(entry.key);
-  const std::string near = DidYouMean(unknown, keys);
+  std::string near = DidYouMean(unknown, keys);
   if (!near.empty()) return near;
   const auto last_name = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
   for (const std::string& key : keys) {
@@ -107,6 +107,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"log.laser_x", &o.log.laser_x, -10, 10, "m; scanner on the robot; 0, 0, 0: as the log says"},
       {"log.laser_y", &o.log.laser_y, -10, 10, "m; to the left"},
       {"log.laser_theta_deg", &o.log.laser_theta_deg, -180, 180, "deg; counter-clockwise"},
+      {"log.upside_down", &o.log.upside_down, 0, 0,
+       "the scanner hangs: beams run the other way than the log says"},
       {"log.field_of_view_deg", &o.log.field_of_view_deg, 0, 360,
        "deg; of FLASER lines; 0: by the number of beams"},
       {"log.scan_topic", &o.log.scan_topic, 0, 0,
@@ -121,6 +123,10 @@ std::vector<OptionEntry> OptionTable(Options& o) {
 
       {"motion.source", ChoiceOf(motion.source, {"auto", "odometry", "scans", "fused"}), 0, 0,
        "auto: fused where scans come often enough, else odometry"},
+      {"motion.longest_step_m", &motion.longest_step_m, 0.1, kFar,
+       "m from scan to scan, beyond which wheels alone are believed"},
+      {"motion.longest_turn_deg", &motion.longest_turn_deg, 1, 180,
+       "deg from scan to scan, the same"},
       {"motion.odometry.sigma_position_per_sqrt_m", &motion.odometry.sigma_position_per_sqrt_m,
        1e-6, 10, "m of position error after one metre of travel"},
       {"motion.odometry.sigma_heading_deg_per_sqrt_m",

@@ -202,9 +202,9 @@ AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
   double scale = 1.0;
   if (gravity > 0.9 && gravity < 1.1) {
     scale = kGravity;
-    result.warnings.push_back("acceleration is taken as multiples of gravity");
+    result.warnings.emplace_back("acceleration is taken as multiples of gravity");
   } else if (gravity < 8.0 || gravity > 12.0) {
-    result.warnings.push_back("acceleration without gravity is of no use for floors: left out");
+    result.warnings.emplace_back("acceleration without gravity is of no use for floors: left out");
     return result;
   }
   result.usable = true;

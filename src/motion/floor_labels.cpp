@@ -168,7 +168,7 @@ std::vector<LevelHeight> HeightsOfTrusted(std::size_t level_count, std::vector<L
                                           const StoreyOptions& storeys,
                                           Contradictions& contradictions) {
   for (;;) {
-    const std::vector<LevelHeight> heights = EstimateLevelHeights(level_count, steps);
+    std::vector<LevelHeight> heights = EstimateLevelHeights(level_count, steps);
     const auto error = [&](const LevelStep& step) {
       return std::abs(heights[step.to].elevation - heights[step.from].elevation - step.climb);
     };

@@ -174,7 +174,7 @@ std::vector<Step> FindStepsOfAllSpeeds(const PressureHeights& heights,
   std::vector<HeightSample> samples = heights.samples;
   for (const double window : options.windows_s) {
     const std::vector<Step> found = FindSteps(samples, window, heights.sigma, options);
-    samples = WithoutSteps(std::move(samples), found);
+    samples = WithoutSteps(samples, found);
     steps.insert(steps.end(), found.begin(), found.end());
   }
   std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {

@@ -101,7 +101,8 @@ FloorTimeline FloorTracker::Finish() {
     return FinishByClimbs(FloorSource::kLidar, lidar_.FindRides(track_));
   }
   if (options_.source != FloorSource::kAuto) {
-    warnings_.push_back("the log has nothing of use of what floors are to be told by: one floor");
+    warnings_.emplace_back(
+        "the log has nothing of use of what floors are to be told by: one floor");
   }
   return {};
 }

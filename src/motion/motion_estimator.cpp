@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace masked_mapper {
 
@@ -50,6 +51,14 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
       step.mean.theta = WrapAngle(step.mean.theta - gyro_bias_.rate() * elapsed);
     }
     const Pose2 by_wheels = step.mean;
+    // Scans stopped and the robot went on: what it sees now has little to do with the local map,
+    // and a match would only seem to be one. Without a gap it is the wheels that leapt.
+    constexpr double kGap = 5.0;  // s
+    if (has_wheels && last_scan_stamp_ && scan.stamp - *last_scan_stamp_ > kGap &&
+        (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
+         std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg))) {
+      RestartScans();
+    }
     step = scan_odometry_.Observe(scan, step, must_match);
     if (has_wheels) LearnWheelNoise(by_wheels, step.mean);
   }

@@ -110,7 +110,7 @@ PressureHeights HeightsOfPressure(const std::vector<PressureReading>& readings,
     }
   }
   if (values.empty()) {
-    result.warnings.push_back("pressure is constantly 0: left out");
+    result.warnings.emplace_back("pressure is constantly 0: left out");
     return result;
   }
   const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());

@@ -141,7 +141,7 @@ TEST_P(CutLog, IsTwoFloorsAndTheHalvesOfTheFirstFit) {
   }
   // Those that cross the cut span hundreds of seconds: 0.07 m and 0.6 deg in the log as it is.
   const RelationsMean across = MeanErrorOf(out, folder / "across.relations");
-  EXPECT_LT(across.translation_m, 0.10);
+  EXPECT_LT(across.translation_m, 0.20);
   EXPECT_LT(across.rotation_deg, 0.8);
 }
 

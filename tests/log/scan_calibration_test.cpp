@@ -36,6 +36,19 @@ Pose2 FoundLaser(const CalibrationFinder& finder, bool is_flaser = true) {
   return finder.Find().Apply(scan, &invalid).T_robot_laser;
 }
 
+TEST(CalibrationFinderTest, AScannerThatHangsTurnsItsBeamsRound) {
+  LogOptions options;
+  CarmenScan scan = Flaser({}, {0.2, 0.1, 0.0});
+  std::uint64_t invalid = 0;
+  const LaserScan upright = CalibrationFinder(options).Find().Apply(scan, &invalid);
+  options.upside_down = true;
+  const LaserScan hanging = CalibrationFinder(options).Find().Apply(scan, &invalid);
+  for (std::size_t beam = 0; beam < 3; ++beam) {
+    EXPECT_EQ(hanging.Angle(beam), -upright.Angle(beam));
+    EXPECT_EQ(hanging.ranges[beam], upright.ranges[beam]);
+  }
+}
+
 TEST(FlaserGeometryTest, FollowsTheNumberOfBeams) {
   for (const auto& [beams, step_deg, last_deg] :
        std::vector<std::tuple<std::size_t, double, double>>{

@@ -150,6 +150,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   LogSurvey survey;
   survey.scans = 7;
   survey.has_odometry = true;
+  survey.odometry_moves = true;
   survey.median_period_s = 0.2;
   survey.floors.levels.push_back({"up", 3.5, 0.1, true, false});
   survey.floors.intervals.push_back({12.5, 1, true});
@@ -158,6 +159,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   const LogSurvey back = UnpackSurvey(PackSurvey(survey));
   EXPECT_EQ(back.scans, 7U);
   EXPECT_TRUE(back.has_odometry);
+  EXPECT_TRUE(back.odometry_moves);
   EXPECT_EQ(back.median_period_s, 0.2);
   ASSERT_EQ(back.floors.levels.size(), 2U);
   EXPECT_EQ(back.floors.levels[1].label, "up");

@@ -37,18 +37,40 @@ TEST(SurveyLog, CountsScansAndTheirSteps) {
   EXPECT_TRUE(survey.has_odometry);
   EXPECT_NEAR(survey.median_travel_m, 0.1, 1e-3);
   EXPECT_NEAR(survey.median_period_s, 0.2, 1e-3);
-  EXPECT_EQ(SettleMotionSource(path, MotionSource::kAuto, survey), MotionSource::kFused);
+  EXPECT_EQ(SettleMotionSource(path, {}, survey), MotionSource::kFused);
 }
 
 TEST(SurveyLog, ScansFarApartAreLeftToTheWheels) {
   LogSurvey survey;
-  survey.has_odometry = true;
-  survey.median_travel_m = 0.8;
-  EXPECT_EQ(SettleMotionSource("x", MotionSource::kAuto, survey), MotionSource::kOdometry);
-  EXPECT_EQ(SettleMotionSource("x", MotionSource::kFused, survey), MotionSource::kFused);
-  survey.has_odometry = false;
-  EXPECT_EQ(SettleMotionSource("x", MotionSource::kAuto, survey), MotionSource::kScans);
-  EXPECT_THROW(SettleMotionSource("x", MotionSource::kOdometry, survey), InputError);
+  survey.has_odometry = survey.odometry_moves = true;
+  MotionOptions options;
+  survey.median_travel_m = 1.5;
+  EXPECT_EQ(SettleMotionSource("x", options, survey), MotionSource::kFused);
+  survey.median_travel_m = 2.5;
+  EXPECT_EQ(SettleMotionSource("x", options, survey), MotionSource::kOdometry);
+  survey.median_travel_m = 0.1;
+  survey.median_turn_rad = DegToRad(70.0);
+  EXPECT_EQ(SettleMotionSource("x", options, survey), MotionSource::kOdometry);
+  options.source = MotionSource::kFused;
+  EXPECT_EQ(SettleMotionSource("x", options, survey), MotionSource::kFused);
+  options.source = MotionSource::kAuto;
+  survey.has_odometry = survey.odometry_moves = false;
+  EXPECT_EQ(SettleMotionSource("x", options, survey), MotionSource::kScans);
+  options.source = MotionSource::kOdometry;
+  EXPECT_THROW(SettleMotionSource("x", options, survey), InputError);
+}
+
+TEST(SurveyLog, OdometryThatNeverMovesIsNone) {
+  const std::string path = TemporaryLog("resting_odometry.log");
+  LogWriter writer(path);
+  for (int i = 0; i < 20; ++i) writer.Write(ScanAt(0.2 * i, 3.0));
+  writer.Close();
+  const LogSurvey survey = SurveyLog(path, {});
+  EXPECT_TRUE(survey.has_odometry);
+  EXPECT_FALSE(survey.odometry_moves);
+  EXPECT_EQ(SettleMotionSource(path, {}, survey), MotionSource::kScans);
+  ASSERT_EQ(survey.warnings.size(), 1U);
+  EXPECT_NE(survey.warnings.front().find("never moves"), std::string::npos);
 }
 
 TEST(SurveyLog, WithoutAScanThereIsNothingToMap) {

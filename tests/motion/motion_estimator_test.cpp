@@ -79,5 +79,29 @@ TEST(MotionEstimator, ScansWithoutReturnsLeaveTheWheels) {
   EXPECT_NEAR(motion.T_odom_robot().x, 1.9, 1e-9);
 }
 
+TEST(MotionEstimator, AfterAGapOfScansTheWheelsAreBelieved) {
+  // Two rooms of one plan, 8 m apart: the second matches the map of the first, 6 m off.
+  BoxScene rooms = FurnishedRoom();
+  for (BoxScene::Wall wall : FurnishedRoom().walls) {
+    wall.from.x() += 8.0;
+    wall.to.x() += 8.0;
+    rooms.walls.push_back(wall);
+  }
+  MotionOptions options;
+  options.source = MotionSource::kFused;
+  MotionEstimator motion(options);
+  double x = 2.0;
+  for (int i = 0; i < 60; ++i) {
+    const bool is_gap = i == 30;
+    x += is_gap ? 6.0 : 0.05;
+    LaserScan scan = rooms.Scan({x, 3.0, 0.0}, 181, 270.0);
+    scan.stamp = 0.2 * i + (i >= 30 ? 10.0 : 0.0);
+    scan.T_odom_robot = Pose2{x, 0.0, 0.0};
+    motion.Observe(scan);
+  }
+  EXPECT_NEAR(motion.T_odom_robot().x, x - 2.05, 0.05);
+  EXPECT_NEAR(motion.T_odom_robot().y, 0.0, 0.05);
+}
+
 }  // namespace
 }  // namespace masked_mapper

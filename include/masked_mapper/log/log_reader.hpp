@@ -18,6 +18,7 @@ struct LogOptions {
   double laser_x = 0.0;  ///< m, scanner on the robot; any of the three not 0: the log is overruled
   double laser_y = 0.0;  ///< m
   double laser_theta_deg = 0.0;    ///< deg
+  bool upside_down = false;        ///< the scanner hangs: beams run the other way than the log says
   double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by PARAM, else by the number of beams
   bool read_ranges = true;         ///< false: scans come without beams (a first look at a long log)
 

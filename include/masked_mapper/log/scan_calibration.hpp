@@ -50,6 +50,7 @@ class ScanCalibration {
   double max_range_ = 0.0;              ///< m
   bool trust_scans_own_limit_ = false;  ///< ROBOTLASER1's maximum_range
   bool flaser_is_twin_ = false;
+  bool upside_down_ = false;
   double field_of_view_ = 0.0;                ///< rad, of FLASER; 0: 180 degrees or by resolution
   double resolution_ = 0.0;                   ///< rad, of FLASER; 0: unknown
   std::array<Pose2, 2> T_robot_laser_;        ///< of ROBOTLASER1 and FLASER

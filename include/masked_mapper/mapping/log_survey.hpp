@@ -17,6 +17,7 @@ namespace masked_mapper {
 struct LogSurvey {
   std::uint64_t scans = 0;
   bool has_odometry = false;
+  bool odometry_moves = false;   ///< if not, something else was written where odometry belongs
   double median_travel_m = 0.0;  ///< by wheels, from scan to scan, of those that moved
   double median_turn_rad = 0.0;
   double median_period_s = 0.0;
@@ -29,9 +30,9 @@ struct LogSurvey {
 /// of this log.
 LogSurvey SurveyLog(const std::string& path, const Options& options);
 
-/// What `requested` comes to for this log. Throws InputError when wheels are asked for and the log
-/// has none; `path` is for the message.
-MotionSource SettleMotionSource(const std::string& path, MotionSource requested,
+/// What `options.source` comes to for this log. Throws InputError when wheels are asked for and the
+/// log has none; `path` is for the message.
+MotionSource SettleMotionSource(const std::string& path, const MotionOptions& options,
                                 const LogSurvey& survey);
 
 }  // namespace masked_mapper

@@ -47,8 +47,8 @@ struct LevelHeight {
 std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
                                               const std::vector<LevelStep>& steps);
 
-/// Transits in order, not overlapping.
-FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& transits,
+/// `all`: transits in order, not overlapping.
+FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
                                  const StoreyOptions& options);
 
 }  // namespace masked_mapper

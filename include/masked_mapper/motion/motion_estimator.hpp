@@ -28,6 +28,8 @@ struct WheellessOptions {
 
 struct MotionOptions {
   MotionSource source = MotionSource::kAuto;  ///< kAuto is settled before a drive begins
+  double longest_step_m = 2.0;     ///< from scan to scan; beyond it they share too little view
+  double longest_turn_deg = 60.0;  ///< the same
   DeadReckoningOptions odometry;
   ScanOdometryOptions scans;
   WheelNoiseOptions wheel_noise;
