@@ -10,6 +10,11 @@ function(masked_mapper_flags target)
   if(MASKED_MAPPER_STRICT)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Werror)
   endif()
+  if(MASKED_MAPPER_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link,address,undefined
+                           -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
   if(MASKED_MAPPER_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${MASKED_MAPPER_SANITIZE}
                            -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)

@@ -6,5 +6,5 @@ cd "$(dirname "$0")/.."
 
 arguments=(-i)
 [[ "${1:-}" == --check ]] && arguments=(--dry-run -Werror)
-find include src apps tests examples benchmarks \( -name '*.hpp' -o -name '*.cpp' \) -print0 |
+find include src apps tests examples benchmarks fuzz \( -name '*.hpp' -o -name '*.cpp' \) -print0 |
   sort -z | xargs -0 -r clang-format --style=file "${arguments[@]}"

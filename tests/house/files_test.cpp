@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 TEST(Files, FirstLineIsTheLicence) {
   std::vector<fs::path> files =
-      CppFiles({"include", "src", "apps", "tests", "examples", "benchmarks"});
+      CppFiles({"include", "src", "apps", "tests", "examples", "benchmarks", "fuzz"});
   for (const std::string folder : {"src", "apps", "tests", "examples", "benchmarks", "cmake",
-                                   "scripts", ".ci", "config", "experiments"}) {
+                                   "scripts", ".ci", "config", "experiments", "fuzz"}) {
     for (const auto& file : FilesUnder(folder, {".txt", ".cmake", ".sh", ".py", ".yaml", ".smk"})) {
       if (file.extension() != ".txt" || file.filename() == "CMakeLists.txt") files.push_back(file);
     }

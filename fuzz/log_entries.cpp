@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fuzz/entries.hpp"
+#include "fuzz/input_file.hpp"
+#include "masked_mapper/log/carmen_reader.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/log/ros_messages.hpp"
+#include "masked_mapper/log/rosbag_reader.hpp"
+
+namespace masked_mapper::fuzz {
+namespace {
+
+template <typename Open>
+void ReadToTheEnd(const Open& open, const std::string& path) {
+  try {
+    const std::unique_ptr<LogReader> reader = open(path, LogOptions{});
+    while (reader->Next()) {
+    }
+    // Kept from being optimised away, and read once by the sanitizers.
+    if (reader->Progress() < 0.0 || reader->Statistics().max_range < 0.0) std::abort();
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace
+
+void CarmenLog(const std::uint8_t* data, std::size_t size) {
+  const InputFile file(".log", data, size);
+  ReadToTheEnd(&OpenCarmenLog, file.path());
+}
+
+void RosBag1(const std::uint8_t* data, std::size_t size) {
+  const InputFile file(".bag", data, size);
+  ReadToTheEnd(&OpenRosBag, file.path());
+}
+
+void RosBag2(const std::uint8_t* data, std::size_t size) {
+  const InputFile file(".db3", data, size);
+  ReadToTheEnd(&OpenRosBag, file.path());
+}
+
+void RosMessages(const std::uint8_t* data, std::size_t size) {
+  for (const MessageEncoding encoding : {MessageEncoding::kRos1, MessageEncoding::kCdr}) {
+    ParseHeader(data, size, encoding);
+    ParseLaserScan(data, size, encoding);
+    ParseMultiEchoLaserScan(data, size, EchoChoice::kStrongest, encoding);
+    ParseOdometry(data, size, encoding);
+    ParseTransforms(data, size, encoding);
+    ParseImu(data, size, encoding);
+    ParseFluidPressure(data, size, encoding);
+  }
+}
+
+}  // namespace masked_mapper::fuzz

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include "fuzz/entries.hpp"
+#include "fuzz/input_file.hpp"
+#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/mapping/configuration.hpp"
+
+namespace masked_mapper::fuzz {
+
+void Configuration(const std::uint8_t* data, std::size_t size) {
+  Options options;
+  try {
+    ReadConfigurationText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size),
+                          options);
+  } catch (const InputError&) {
+  }
+}
+
+void MapFile(const std::uint8_t* data, std::size_t size) {
+  const InputFile file(".mmap", data, size);
+  try {
+    ReadMapFile(file.path());
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace masked_mapper::fuzz
