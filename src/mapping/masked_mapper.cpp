@@ -14,6 +14,8 @@
 namespace masked_mapper {
 namespace {
 
+constexpr const char* kTooFewVotes = "too few votes";
+
 /// Whether a match leaves its least certain direction open.
 bool IsAmbiguous(const Eigen::Matrix3d& covariance, const AmbiguityOptions& options) {
   const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
@@ -201,7 +203,7 @@ std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
       } else if (IsAmbiguous(attempt.T_a_b.covariance, options_.ambiguity)) {
         attempt.reason = "the place looks alike along a line";
       } else {
-        attempt.reason = "too few votes";
+        attempt.reason = kTooFewVotes;
         attempt_of_hypothesis_.push_back(result_.attempts.size());
         Hypothesis hypothesis;
         hypothesis.a = attempt.a;
@@ -264,10 +266,53 @@ void MaskedMapper::RecordScan(const LaserScan& scan, const FloorInterval& interv
   }
 }
 
+// What too few loops spoke for while the map was being made is looked at once more in the map that
+// came of it: the pair is matched again from its optimised poses, and enters where that moves it by
+// next to nothing.
+void MaskedMapper::Polish() {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < result_.attempts.size(); ++i) {
+    if (result_.attempts[i].reason == kTooFewVotes) open.push_back(i);
+  }
+  // By the older node: its submap is built once.
+  std::stable_sort(open.begin(), open.end(), [&](std::size_t one, std::size_t other) {
+    return result_.attempts[one].b < result_.attempts[other].b;
+  });
+  const double most_rad = DegToRad(options_.polish.most_deg);
+  for (const std::size_t i : open) {
+    ClosureAttempt& attempt = result_.attempts[i];
+    const Node& a = result_.graph.nodes()[static_cast<std::size_t>(attempt.a)];
+    const Node& b = result_.graph.nodes()[static_cast<std::size_t>(attempt.b)];
+    const auto is_near = [&](const Pose2& T_a_b) {
+      const Pose2 T_map_a_b = Between(a.T_world_robot, b.T_world_robot);
+      return Distance(T_a_b, T_map_a_b) <= options_.polish.most_m &&
+             std::abs(WrapAngle(T_a_b.theta - T_map_a_b.theta)) <= most_rad;
+    };
+    if (!is_near(attempt.T_a_b.mean)) continue;
+    UncertainPose2 guess;
+    guess.mean = Between(b.T_world_robot, a.T_world_robot);
+    guess.covariance.diagonal() << options_.polish.most_m * options_.polish.most_m,
+        options_.polish.most_m * options_.polish.most_m, most_rad * most_rad;
+    const std::optional<SubmapMatch> again = submaps_.Refine(attempt.b, *a.points_in_robot, guess);
+    if (!again) continue;
+    const UncertainPose2 T_a_b = Inverse(again->T_node_robot);
+    if (!is_near(T_a_b.mean) || IsAmbiguous(T_a_b.covariance, options_.ambiguity)) continue;
+    attempt.T_a_b = T_a_b;
+    attempt.agreement = again->inlier_share;
+    attempt.state = ClosureState::kValidated;
+    attempt.reason = "fits the optimised map";
+    attempt_of_edge_[result_.graph.AddEdge({attempt.a, attempt.b, T_a_b, EdgeKind::kClosure})] = i;
+  }
+}
+
 // With all closures in, those that disagree with the rest go before the map is written.
 void MaskedMapper::Audit() {
   const StageTimer timer(result_.seconds.optimisation);
   Optimize(options_.optimizer.solver, result_.graph);
+  if (options_.motion.source != MotionSource::kOdometry) {
+    Polish();
+    Optimize(options_.optimizer.solver, result_.graph);
+  }
   const std::vector<EdgeId> wrong =
       AuditClosures(options_.audit, options_.optimizer.solver, result_.graph);
   if (wrong.empty()) return;

@@ -481,6 +481,9 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"optimizer.negligible_gain", &o.optimizer.negligible_gain, 0, 1e6,
        "decrease of chi^2 below which no larger part is solved"},
 
+      {"polish.most_m", &o.polish.most_m, 0, 100,
+       "m between a late closure and the map; 0: none is late"},
+      {"polish.most_deg", &o.polish.most_deg, 0, 180, "deg, the same"},
       {"audit.max_chi2", &o.audit.max_chi2, 0.1, 1e6,
        "chi^2 above which a closure disagrees with the map"},
       {"audit.tolerance_m", &o.audit.tolerance_m, 0, 10,

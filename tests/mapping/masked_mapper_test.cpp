@@ -164,5 +164,42 @@ TEST(MaskedMapper, OneScanIsAMap) {
   EXPECT_THROW(MaskedMapper("nonsense", OptionsFor(MotionSource::kFused), floors), InputError);
 }
 
+TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
+  const RingDrive drive(2.3, 0.2);
+  for (const double most_m : {0.2, 0.0}) {
+    Options options;
+    options.motion.source = MotionSource::kFused;
+    options.validator.sure_loop_trace = 0.0;  // leaves more to the end
+    options.polish.most_m = most_m;
+    const FloorTimeline floors;
+    MaskedMapper mapper("openings", options, floors);
+    for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
+    const MappingResult map = mapper.Finish();
+    int late = 0;
+    for (const ClosureAttempt& attempt : map.attempts) {
+      if (attempt.reason != "fits the optimised map") continue;
+      ++late;
+      EXPECT_EQ(attempt.state, ClosureState::kValidated);
+      const auto truth_at = [&](NodeId node) {
+        const double stamp = map.graph.nodes()[static_cast<std::size_t>(node)].stamp;
+        for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+          if (drive.scans[i].stamp == stamp) return drive.truth[i];
+        }
+        ADD_FAILURE() << "no scan at a node";
+        return Pose2();
+      };
+      const Pose2 error =
+          Between(attempt.T_a_b.mean, Between(truth_at(attempt.a), truth_at(attempt.b)));
+      EXPECT_LT(std::hypot(error.x, error.y), 0.1) << "m";
+      EXPECT_LT(RadToDeg(std::abs(error.theta)), 1.0) << "deg";
+    }
+    if (most_m > 0.0) {
+      EXPECT_GT(late, 0);
+    } else {
+      EXPECT_EQ(late, 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace masked_mapper

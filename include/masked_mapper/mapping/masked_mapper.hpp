@@ -56,6 +56,7 @@ class MaskedMapper {
   std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
   bool RefineMatch(ClosureAttempt& attempt);
   void AddValidated(const std::vector<HypothesisId>& validated);
+  void Polish();
   void Audit();
   void RecordScan(const LaserScan& scan, const FloorInterval& interval);
 

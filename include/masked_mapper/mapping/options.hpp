@@ -35,6 +35,12 @@ struct AmbiguityOptions {
   double max_sigma_deg = 3.0;
 };
 
+/// Which pairs enter once the whole map is known, matched again from their optimised poses.
+struct PolishOptions {
+  double most_m = 0.2;  ///< that the match may be away from the map, before and after
+  double most_deg = 2.0;
+};
+
 /// When two visits of floors that no sensor tells apart are one floor (mapping/floor_joining.hpp).
 struct FloorJoinOptions {
   double reach_m = 4.0;    ///< from a node to its neighbours on the older floor
@@ -57,6 +63,7 @@ struct Options {
   SubmapOptions submaps;
   AmbiguityOptions ambiguity;
   FloorJoinOptions floor_joins;
+  PolishOptions polish;
   ValidatorOptions validator;
   UpdateOptions optimizer;
   AuditOptions audit;
