@@ -57,6 +57,8 @@ def draw(rows, masks, motion, path):
 
     bars = [(mask, source) for mask in masks
             for source in dict.fromkeys(row["motion"] for row in rows)]
+    timed = {(row["mask"], row["motion"]) for row in rows if "motion_s" in row}
+    bars = [bar for bar in bars if bar in timed]
     by_key = {(row["mask"], row["motion"]): row for row in rows}
     bottom = [0.0] * len(bars)
     greys = ["#1a1a1a", "#4d4d4d", "#808080", "#b3b3b3", "#d9d9d9", "#ffffff"]
@@ -87,8 +89,9 @@ def main(snakemake):
     for row in rows:
         never = next(other for other in rows if (other["mask"], other["motion"]) ==
                      ("never", row["motion"]))
-        if row["mask"] != "never":
-            row["cpu_over_never_s"] = row["cpu_threads1_s"] - never["cpu_threads1_s"]
+        row["cpu_s"] = row.get("cpu_threads1_s", row.get("cpu_threads2_s"))
+        if row["mask"] != "never" and row["cpu_s"] is not None:
+            row["cpu_over_never_s"] = row["cpu_s"] - never["cpu_s"]
     columns = list(dict.fromkeys(key for row in rows for key in row))
     write_csv(snakemake.output.csv, rows, columns)
     draw(rows, masks, snakemake.params.motion, snakemake.output.svg)
