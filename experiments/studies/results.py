@@ -426,21 +426,24 @@ def main(snakemake):
     data = {name: rows_of(path) for name, path in snakemake.input.items() if name != "figures"}
     params = snakemake.params
     verdicts = Verdicts()
-    parts = [
-        table1_text(data["table1"], params.motion, dict(params.masks), params.settings, verdicts),
-        fig2_text(data["fig2"]),
-        curve_text(3, data["fig3"], "MinScore", " / %", verdicts),
-        curve_text(4, data["fig4"], "MaxMaha", "", verdicts),
-        fig5_text(data["fig5"]),
-        robustness_text(data["robustness"], verdicts),
-        scaling_text(data["scaling"], verdicts),
-    ]
-    if "real_logs" in data:
-        parts.append(real_text(data["real_logs"], params.missing))
-    else:
-        parts.append("## Real logs\n\nSkipped: their files are missing.\n")
+    writers = {
+        "table1": lambda rows: table1_text(rows, params.motion, dict(params.masks),
+                                           params.settings, verdicts),
+        "fig2": fig2_text,
+        "fig3": lambda rows: curve_text(3, rows, "MinScore", " / %", verdicts),
+        "fig4": lambda rows: curve_text(4, rows, "MaxMaha", "", verdicts),
+        "fig5": fig5_text,
+        "robustness": lambda rows: robustness_text(rows, verdicts),
+        "scaling": lambda rows: scaling_text(rows, verdicts),
+        "real_logs": lambda rows: real_text(rows, params.missing),
+    }
+    parts = [write(data[name]) for name, write in writers.items() if name in data]
+    left_out = [name for name in writers if name not in data]
+    if left_out:
+        parts.append(f"## Left out\n\nNot run in profile `{params.profile}`, or without their logs: "
+                     f"{listed(left_out)}.\n\n")
     own = [mask for mask in params.masks if mask not in PAPER_TABLE1 and mask != "never"]
-    if own:
+    if own and "table1" in data:
         parts.append(own_masks_text(data["table1"], data.get("real_logs", []), params.motion, own,
                                     verdicts))
     if params.slurm:
