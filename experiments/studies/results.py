@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """results.md: every table and figure, and what it shows beside the paper's claim. All numbers come
 from the studies' CSV files; sentences are chosen by them."""
+import collections
 import csv
 import os
 import shutil
@@ -112,6 +113,9 @@ def table1_text(rows, motion, masks, settings, verdicts):
                        "path error / m (range)", "mapping / s", "CPU over *never* / s", "whole run / s",
                        "CPU of it / s",
                        "paper: attempted / matched / validated / s"], lines) + "\n"
+        if all(by_key[mask, source]["total_threads2_s"] is None for mask in masks):
+            text += "Not timed in this profile.\n\n"
+            continue
         text += "Seconds by stage, two threads:\n\n"
         text += table(["mask", "read", *STAGES, "rendering", "export", "peak MiB"],
                       [[mask] + [show(by_key[mask, source][f"{stage}_s"]) for stage in
@@ -171,6 +175,8 @@ def table1_text(rows, motion, masks, settings, verdicts):
                    f"{PAPER_PER_MATCH_MS} ms), openings, odometry alone", per_attempt, 1.0, "ms at most")
     for source, row in (("odometry", speed["openings"]), (motion, ours["openings"])):
         wall, cpu = row["total_threads2_s"], row["cpu_s"]
+        if wall is None:
+            continue
         verdicts.add(f"Time: whole run, openings, motion `{source}`, under 10 s",
                      f"{show(wall)} s on two threads; {show(cpu)} s of CPU",
                      min(wall, cpu) < 10.0)
@@ -297,11 +303,13 @@ def robustness_text(rows, verdicts):
                       show(sum(row["attempted"] for row in runs), 0),
                       show(median([row["cpu_s"] for row in runs]))])
         if mask == "openings":
-            verdicts.add(f"Robustness: no false closure in 100 buildings ({len(runs)} run)",
-                         f"{false:.0f} false of {sum(row['checked'] or 0 for row in runs):.0f}"
-                         if "checked" in runs[0] else f"{false:.0f} false", false == 0)
-            verdicts.add("Robustness: at least 99 % of true loops closed",
-                         percent(closed, pairs, 2), bool(pairs) and closed >= 0.99 * pairs)
+            enough = len(runs) >= 100
+            verdicts.add("Robustness: no false closure in 100 buildings",
+                         f"{show(false, 0)} in {len(runs)} buildings",
+                         False if false else True if enough else None)
+            verdicts.add("Robustness: at least 99 % of true loops closed in 100 buildings",
+                         f"{percent(closed, pairs, 2)} in {len(runs)}",
+                         bool(pairs) and closed >= 0.99 * pairs if enough else None)
     text += table(["mask", "buildings", "validated", "false", "true revisits", "closed",
                    "path error, median / m", "greatest / m", "attempted", "CPU of a run, median / s"],
                   lines) + "\n"
@@ -453,7 +461,7 @@ def main(snakemake):
     else:
         verdicts.add("The small sweep on Slurm: the same files as the local run",
                      "experiments/slurm/compare.sh was not run", None)
-    missed = sum(1 for line in verdicts.lines if "missed" in line[2])
+    tally = collections.Counter(line[2] for line in verdicts.lines)
     readme = os.path.relpath(params.readme, os.path.dirname(os.path.abspath(snakemake.output[0])))
     text = ("# Results\n\n"
             f"Written by the workflow in [`experiments/`]({readme}) from "
@@ -464,7 +472,8 @@ def main(snakemake):
             f"Profile `{params.profile}`, motion `{params.motion}` where nothing else is said.\n\n"
             "## What was to be shown\n\n" +
             table(["claim", "measured", ""], verdicts.lines) +
-            f"\n{len(verdicts.lines) - missed} of {len(verdicts.lines)} not missed.\n\n" +
+            "\n" + ", ".join(f"{count} {word.strip('*')}" for word, count in tally.items()) +
+            ".\n\n" +
             "".join(parts).replace("{images}", params.images))
     with open(snakemake.output[0], "w") as file:
         file.write(text.rstrip() + "\n")

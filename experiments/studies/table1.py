@@ -90,7 +90,7 @@ def main(snakemake):
         never = next(other for other in rows if (other["mask"], other["motion"]) ==
                      ("never", row["motion"]))
         row["cpu_s"] = row.get("cpu_threads1_s", row.get("cpu_threads2_s"))
-        if row["mask"] != "never" and row["cpu_s"] is not None:
+        if row["mask"] != "never" and None not in (row["cpu_s"], never["cpu_s"]):
             row["cpu_over_never_s"] = row["cpu_s"] - never["cpu_s"]
     columns = list(dict.fromkeys(key for row in rows for key in row))
     write_csv(snakemake.output.csv, rows, columns)
