@@ -3,7 +3,10 @@
 from the studies' CSV files; sentences are chosen by them."""
 import collections
 import csv
+import hashlib
+import json
 import os
+import pathlib
 import shutil
 import sys
 
@@ -430,6 +433,23 @@ def own_masks_text(table1, real, motion, own, verdicts):
     return text
 
 
+def builds_text(folder, program):
+    """Which build of the program made the runs, and whether it is the present one."""
+    made_by = set()
+    for path in pathlib.Path(folder).rglob("*.json"):
+        with open(path) as file:
+            build = json.load(file).get("program")
+        if build:
+            made_by.add(build)
+    present = hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest()[:12]
+    if made_by == {present}:
+        return f"All runs are of one build of the program (`{present}`).\n\n"
+    return ("**Out of date:** the runs are of other builds of the program (" +
+            listed(f"`{build}`" for build in sorted(made_by)) + f") than the present one "
+            f"(`{present}`), which may do better or worse. To renew them, remove the folder of the "
+            "profile and run the workflow again.\n\n")
+
+
 def main(snakemake):
     data = {name: rows_of(path) for name, path in snakemake.input.items() if name != "figures"}
     params = snakemake.params
@@ -469,7 +489,8 @@ def main(snakemake):
             "*The Masked Mapper: Masked Metric Mapping* (Haggenmiller, Kabacinski, Krogius, Olson); "
             "its logs are not public, so its campus is a simulated one of the same size, and shapes "
             "are compared, not digits.\n\n"
-            f"Profile `{params.profile}`, motion `{params.motion}` where nothing else is said.\n\n"
+            f"Profile `{params.profile}`, motion `{params.motion}` where nothing else is said. " +
+            builds_text(params.runs, params.program) +
             "## What was to be shown\n\n" +
             table(["claim", "measured", ""], verdicts.lines) +
             "\n" + ", ".join(f"{count} {word.strip('*')}" for word, count in tally.items()) +
