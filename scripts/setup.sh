@@ -12,7 +12,7 @@ packages=(
   libgtest-dev
 )
 checks=(
-  clang clang-format clang-tidy python3 file dpkg-dev
+  clang-format clang-tidy python3 file dpkg-dev
   octomap-tools
   python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs  # to write test bags
 )
