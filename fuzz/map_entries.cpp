@@ -6,6 +6,7 @@
 #include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/mapping/configuration.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 
 namespace masked_mapper::fuzz {
 
@@ -14,6 +15,17 @@ void Configuration(const std::uint8_t* data, std::size_t size) {
   try {
     ReadConfigurationText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size),
                           options);
+  } catch (const InputError&) {
+  }
+}
+
+void Edits(const std::uint8_t* data, std::size_t size) {
+  static const SavedMap start =
+      ReadMapFile(MASKED_MAPPER_SOURCE_DIR "/fuzz/corpus/map_file/drive.mmap");
+  MappingResult map = start.result;
+  try {
+    ApplyEditsText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size),
+                   start.origin.options, map);
   } catch (const InputError&) {
   }
 }
