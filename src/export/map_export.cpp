@@ -13,6 +13,7 @@
 #include "masked_mapper/export/occupancy_grid_file.hpp"
 #include "masked_mapper/export/octomap_file.hpp"
 #include "masked_mapper/export/point_cloud_file.hpp"
+#include "masked_mapper/export/report.hpp"
 #include "masked_mapper/export/trajectory_file.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 
@@ -94,6 +95,7 @@ Summary WriteMap(const MappingResult& result, const RunDescription& run,
   WriteNodes(result.graph, folder / "nodes.tum");
   WriteG2o(result.graph, folder / "graph.g2o");
   WriteClosures(result.attempts, result.graph, folder / "closures.csv");
+  const std::string report = ReportData(result, grids, options.grid.max_usable_range_m);
   octree.get();
 
   Summary summary = Summarise(result, run, grids);
@@ -101,6 +103,7 @@ Summary WriteMap(const MappingResult& result, const RunDescription& run,
   summary.seconds.export_ += SecondsSince(export_start);
   summary.seconds.total += SecondsSince(rendering_start);
   WriteSummary(summary, folder / "summary.json");
+  WriteReport(report, summary, folder / "report.html");
   return summary;
 }
 

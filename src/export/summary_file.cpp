@@ -161,7 +161,7 @@ Summary Summarise(const MappingResult& result, const RunDescription& run,
   return summary;
 }
 
-void WriteSummary(const Summary& summary, const std::filesystem::path& path) {
+std::string SummaryText(const Summary& summary) {
   const Json json = {{"log", summary.run.log},
                      {"mask", summary.run.mask},
                      {"motion_source", summary.motion_source},
@@ -172,7 +172,11 @@ void WriteSummary(const Summary& summary, const std::filesystem::path& path) {
                      {"options", SettingsJson(summary.run.settings)},
                      {"warnings", summary.warnings}};
   // A path may hold bytes that are no UTF-8.
-  WriteFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void WriteSummary(const Summary& summary, const std::filesystem::path& path) {
+  WriteFile(path, SummaryText(summary));
 }
 
 }  // namespace masked_mapper

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that a finished map is written as, except the saved map itself and the report:
+// Everything that a finished map is written as, except the saved map itself:
 //
 //   building.bt  building.pcd  building.ply  graph.g2o  trajectory.tum  nodes.tum  closures.csv
-//   summary.json  floors/<label>.{pcd,pgm,yaml,g2o}
+//   summary.json  report.html  floors/<label>.{pcd,pgm,yaml,g2o}
 #pragma once
 
 #include <filesystem>

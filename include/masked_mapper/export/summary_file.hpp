@@ -61,7 +61,10 @@ struct Summary {
 Summary Summarise(const MappingResult& result, const RunDescription& run,
                   const std::vector<OccupancyGrid>& grids);
 
-/// As JSON, in a fixed order of keys. Throws std::runtime_error when the file cannot be written.
+/// As JSON, in a fixed order of keys.
+std::string SummaryText(const Summary& summary);
+
+/// SummaryText as a file. Throws std::runtime_error when it cannot be written.
 void WriteSummary(const Summary& summary, const std::filesystem::path& path);
 
 }  // namespace masked_mapper
