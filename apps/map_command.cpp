@@ -208,10 +208,11 @@ void AddMapCommand(CLI::App& program, Run& run) {
       "  masked_mapper map drive.bag -o out --floors floors.csv\n"
       "\n"
       "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
-      "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv and\n"
-      "summary.json. Nothing is written before all of it is, and an OUT that exists is never\n"
-      "replaced without --force. Until then, what is done is kept in a hidden folder beside OUT\n"
-      "(.OUT.unfinished): whatever ends the run, the same command with --resume goes on.");
+      "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv, summary.json,\n"
+      "and report.html to look at all of it in a browser. Nothing is written before all of it is,\n"
+      "and an OUT that exists is never replaced without --force. Until then, what is done is kept\n"
+      "in a hidden folder beside OUT (.OUT.unfinished): whatever ends the run, the same command\n"
+      "with --resume goes on.");
   command->callback([arguments, &run] { run = [arguments] { return RunMap(*arguments); }; });
 }
 

@@ -78,7 +78,6 @@ const wallFragment = `
   }`;
 
 const scanVertex = `
-  attribute vec2 pointInRobot;
   attribute float scan;
   uniform sampler2D poses;        // per scan two texels: before, after
   uniform float blend;
@@ -90,7 +89,7 @@ const scanVertex = `
     vec3 pose = mix(before, after, blend);
     float c = cos(pose.z);
     float s = sin(pose.z);
-    vec2 point = pose.xy + mat2(c, s, -s, c) * pointInRobot;
+    vec2 point = pose.xy + mat2(c, s, -s, c) * position.xy;
     vec4 in_eye = modelViewMatrix * vec4(point, 0.02, 1.0);
     gl_Position = projectionMatrix * in_eye;
     gl_PointSize = 1.5;
@@ -199,8 +198,8 @@ export class MapScene {
       },
       vertexShader: pointVertex, fragmentShader: nodeFragment,
     });
-    materials.scan_nodes = node(0.5, 4.5);
-    materials.odometry_nodes = node(0.35, 3.5);
+    materials.scan_nodes = node(0.5, 3.6);
+    materials.odometry_nodes = node(0.35, 2.6);
     return materials;
   }
 
@@ -323,10 +322,8 @@ export class MapScene {
                                         THREE.FloatType);
     poses.needsUpdate = true;
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(0), 3));
-    geometry.setAttribute('pointInRobot', new THREE.BufferAttribute(points, 2));
+    geometry.setAttribute('position', new THREE.BufferAttribute(points, 2));  // in robot
     geometry.setAttribute('scan', new THREE.BufferAttribute(scan, 1));
-    geometry.setDrawRange(0, total);
     const object = new THREE.Points(geometry, new THREE.ShaderMaterial({
       uniforms: {colour: {value: new THREE.Color()}, opacity: {value: 0.7}, poses: {value: poses},
                  blend: {value: 1}},
