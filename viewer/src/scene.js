@@ -169,6 +169,7 @@ export class MapScene {
     this.origin = box.getCenter(new THREE.Vector2());
     this.size = box.getSize(new THREE.Vector2());
     this.extent = Math.max(this.size.x, this.size.y, 5);
+    this.course = this.longAxis();
     const moved = (poses) => {
       for (let i = 0; i < poses.length; i += 3) {
         poses[i] -= this.origin.x;
@@ -179,6 +180,20 @@ export class MapScene {
       moved(table.before);
       moved(table.after);
     }
+  }
+
+  /** Direction of the longer axis of the nodes, rad, so that the first view has it across. */
+  longAxis() {
+    const {after, count} = this.model.nodes;
+    let [xx, xy, yy] = [0, 0, 0];
+    for (let i = 0; i < count; ++i) {
+      const x = after[3 * i] - this.origin.x;
+      const y = after[3 * i + 1] - this.origin.y;
+      xx += x * x;
+      xy += x * y;
+      yy += y * y;
+    }
+    return Math.atan2(2 * xy, xx - yy) / 2;
   }
 
   makeMaterials() {
@@ -323,6 +338,8 @@ export class MapScene {
     poses.needsUpdate = true;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(points, 2));  // in robot
+    // Where they are in world only the graphics card knows.
+    geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity);
     geometry.setAttribute('scan', new THREE.BufferAttribute(scan, 1));
     const object = new THREE.Points(geometry, new THREE.ShaderMaterial({
       uniforms: {colour: {value: new THREE.Color()}, opacity: {value: 0.7}, poses: {value: poses},
@@ -515,11 +532,18 @@ export class MapScene {
     return heights.length ? (Math.min(...heights) + Math.max(...heights)) / 2 : 0;
   }
 
-  /** Half the size of the building as drawn. */
-  reach() {
-    const heights = this.model.floors.map((floor) => this.heightOf(floor.index));
-    const tall = heights.length ? Math.max(...heights) - Math.min(...heights) : 0;
-    return new THREE.Vector3(this.size.x, this.size.y, tall + 2).multiplyScalar(0.5);
+  /** Places that a view of the whole has to hold: nodes and some walls of every floor, as drawn. */
+  * places() {
+    const {nodes, floors} = this.model;
+    for (let i = 0; i < nodes.count; ++i) yield this.placeOfNode(i);
+    for (const {index, walls} of floors) {
+      const stride = Math.ceil(walls.count / 2000);
+      for (let i = 0; i < walls.count; i += stride) {
+        yield new THREE.Vector3(walls.origin[0] - this.origin.x + walls.xy[2 * i] * walls.step_m,
+                                walls.origin[1] - this.origin.y + walls.xy[2 * i + 1] * walls.step_m,
+                                this.heightOf(index));
+      }
+    }
   }
 
   /** Looks at all of the building: 'top', 'side' or 'oblique'. */
@@ -528,23 +552,22 @@ export class MapScene {
     const directions = {
       // Not quite from above: there, the way up of the screen would be undefined.
       top: new THREE.Vector3(0, -0.0005, 1), side: new THREE.Vector3(0, -1, 0.02),
-      oblique: new THREE.Vector3(-0.35, -0.8, 0.75),
+      oblique: new THREE.Vector3(-0.25, -0.8, 0.8),
     };
-    const direction = directions[from].normalize();
+    const direction = directions[from].applyAxisAngle(new THREE.Vector3(0, 0, 1), this.course).normalize();
     this.controls.target.copy(target);
     this.camera.position.copy(target).add(direction);
     this.camera.lookAt(target);
-    // The smallest distance from which all eight corners are in sight.
-    const reach = this.reach();
-    const tan = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2)) * 0.94;
+    // The smallest distance from which all of it is in sight.
+    const tan = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2)) * 0.92;
     const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrix, 0);
     const up = new THREE.Vector3().setFromMatrixColumn(this.camera.matrix, 1);
     let distance = 3;
-    for (const sx of [-1, 1]) for (const sy of [-1, 1]) for (const sz of [-1, 1]) {
-      const corner = new THREE.Vector3(sx, sy, sz).multiply(reach);
-      const nearer = corner.dot(direction);
-      distance = Math.max(distance, nearer + Math.abs(corner.dot(up)) / tan,
-                          nearer + Math.abs(corner.dot(right)) / (tan * this.camera.aspect));
+    for (const place of this.places()) {
+      place.sub(target);
+      const nearer = place.dot(direction);
+      distance = Math.max(distance, nearer + Math.abs(place.dot(up)) / tan,
+                          nearer + Math.abs(place.dot(right)) / (tan * this.camera.aspect));
     }
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.maxDistance = distance * 6;
