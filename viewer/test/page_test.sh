@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Maps the log in data/ and looks at its report in headless Chromium.
+# usage: page_test.sh FOLDER PROGRAM      FOLDER: to work in; PROGRAM: masked_mapper
+set -euo pipefail
+viewer=$(realpath "$(dirname "$0")/..")
+# shellcheck source=packages.sh
+source "$viewer/test/packages.sh"
+chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
+[[ -n $chromium ]] || skip "Chromium is not installed (apt-get install chromium)"
+packages "$1"
+map=$(mktemp -d)
+trap 'rm -rf "$map"' EXIT
+# A name that would be markup if it were taken for it.
+log="$map/<b>office & '\"<script>alert(1)<!--.log.gz"
+cp "$viewer/../data/office.log.gz" "$log"
+"$2" map "$log" -o "$map/out" --quiet
+node "$1/test/page_test.mjs" "$chromium" "$map/out/report.html"
