@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Sets up, builds, and runs every test and check.
-# usage: scripts/test.sh [PART...]     parts, in order; all of them without an argument:
+# usage: scripts/test.sh [PART...]     parts, in order; the first three without an argument:
 #   setup      install missing Debian packages
 #   release    release build and all tests
 #   format     clang-format has nothing to change
+# Beside these, on request only, since they take as long again or longer:
 #   tidy       clang-tidy finds nothing
 #   sanitize   address and undefined-behaviour build and all tests
-# Beside these, on request only:
 #   coverage   a build that counts lines, all tests, a table by gcovr
 #   package    Debian packages; the unpacked program runs, a project builds against the library
 set -euo pipefail
@@ -15,7 +15,7 @@ cd "$(dirname "$0")/.."
 
 jobs=$(nproc)
 parts=("$@")
-[[ ${#parts[@]} -gt 0 ]] || parts=(setup release format tidy sanitize)
+[[ ${#parts[@]} -gt 0 ]] || parts=(setup release format)
 
 say() { printf '\n== %s\n' "$*"; }
 
