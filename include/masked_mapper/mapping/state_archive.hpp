@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
 
@@ -40,6 +41,11 @@ void Serialize(Archive& archive, Pose2& pose) {
 template <class Archive>
 void Serialize(Archive& archive, UncertainPose2& pose) {
   archive(pose.mean, pose.covariance);
+}
+
+template <class Archive>
+void Serialize(Archive& archive, OdometryReading& reading) {
+  archive(reading.stamp, reading.T_odom_robot);
 }
 
 template <class Archive, class Scalar, int kRows, int kColumns>

@@ -44,12 +44,7 @@ class DeadReckoning {
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
-    bool started = last_.has_value();
-    archive(started);
-    if (started && !last_) last_.emplace();
-    if (!started) last_.reset();
-    if (last_) archive(last_->stamp, last_->T_odom_robot);
-    archive(T_odom_robot_, T_node_robot_);
+    archive(last_, T_odom_robot_, T_node_robot_);
     // They are learnt on the way.
     archive(options_.sigma_position_per_sqrt_m, options_.sigma_heading_deg_per_sqrt_m,
             options_.sigma_heading_deg_per_sqrt_rad, options_.sigma_heading_deg_per_sqrt_s,

@@ -29,12 +29,7 @@ class GyroBias {
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
-    bool started = last_.has_value();
-    archive(started);
-    if (started && !last_) last_.emplace();
-    if (!started) last_.reset();
-    if (last_) archive(last_->stamp, last_->T_odom_robot);
-    archive(rate_, seconds_);
+    archive(last_, rate_, seconds_);
   }
 
  private:
