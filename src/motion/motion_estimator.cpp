@@ -45,16 +45,16 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
   const bool has_wheels = wheels_.HasStarted() && options_.source != MotionSource::kScans;
   UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
   wheels_.StartNode();
+  const double elapsed = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;
   if (options_.source != MotionSource::kOdometry) {
     if (has_wheels && last_scan_stamp_) {
-      const double elapsed = scan.stamp - *last_scan_stamp_;
       step.mean.theta = WrapAngle(step.mean.theta - gyro_bias_.rate() * elapsed);
     }
     const Pose2 by_wheels = step.mean;
     // Scans stopped and the robot went on: what it sees now has little to do with the local map,
     // and a match would only seem to be one. Without a gap it is the wheels that leapt.
     constexpr double kGap = 5.0;  // s
-    if (has_wheels && last_scan_stamp_ && scan.stamp - *last_scan_stamp_ > kGap &&
+    if (has_wheels && elapsed > kGap &&
         (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
          std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg))) {
       RestartScans();
@@ -62,7 +62,7 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
     step = scan_odometry_.Observe(scan, step, must_match);
     if (has_wheels) LearnWheelNoise(by_wheels, step.mean);
   }
-  last_step_s_ = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;
+  last_step_s_ = elapsed;
   last_scan_stamp_ = scan.stamp;
   last_step_ = step;
   T_odom_robot_ = T_odom_robot_ * step.mean;
