@@ -3,19 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "evaluation/written_file.hpp"
 #include "masked_mapper/log/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
-
-std::string Write(const std::string& name, const std::string& text) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
-  std::ofstream(path) << text;
-  return path;
-}
 
 TEST(NumberLines, WordsAndNumbersWithTheLineInEveryComplaint) {
   const std::string path = Write("numbers.txt", "# c\n1.5  -2\tx\n");

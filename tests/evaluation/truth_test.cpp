@@ -3,19 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "evaluation/written_file.hpp"
 #include "masked_mapper/log/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
-
-std::string Write(const std::string& name, const std::string& text) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
-  std::ofstream(path) << text;
-  return path;
-}
 
 TEST(Truth, OfASimulationIsExactAndBringsItsFloors) {
   Write("drive.log.truth_floors.csv", "t,label\n0,0\n5,-\n8,1\n");

@@ -35,31 +35,13 @@ AccelerationTrack Feel(const SyntheticDrive& drive, const Accelerometer& sensor,
   return track;
 }
 
-WheelTrack TrackOf(const SyntheticDrive& drive) {
-  WheelTrack track;
-  for (const SyntheticDrive::State& state : drive.states()) {
-    track.Observe({state.stamp, state.T_odom_robot});
-  }
-  return track;
-}
-
-SyntheticDrive FourFloors(unsigned seed) {
-  SyntheticDrive drive({0.0, 4.0, 7.5, 11.0}, 0, seed);
-  drive.Roam(200.0);
-  for (const std::size_t floor : {1, 3, 0, 2, 1, 0}) {
-    drive.TakeElevator(floor);
-    drive.Roam(100.0);
-  }
-  return drive;
-}
-
 FloorTimeline Timeline(const AccelerationTrack& acceleration, const WheelTrack& track) {
   return TimelineOfTransits(acceleration.FindRides(track, {}).transits, {});
 }
 
 TEST(FloorAcceleration, KnowsTheFloorsByTwoPulses) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const SyntheticDrive drive = FourFloors(seed);
+    const SyntheticDrive drive = FourFloors(seed, 100.0);
     const FloorTimeline timeline = Timeline(Feel(drive, {}, seed), TrackOf(drive));
     const FloorScore score = ScoreFloors(timeline, drive);
     EXPECT_EQ(score.levels, 4U) << seed;
@@ -87,7 +69,7 @@ TEST(FloorAcceleration, SigmaFitsTheErrors) {
 }
 
 TEST(FloorAcceleration, WithoutWheelsItTellsTheSame) {
-  const SyntheticDrive drive = FourFloors(1);
+  const SyntheticDrive drive = FourFloors(1, 100.0);
   const FloorScore score = ScoreFloors(Timeline(Feel(drive, {}, 1), WheelTrack{}), drive);
   EXPECT_EQ(score.levels, 4U);
   EXPECT_GT(score.right_share, 0.999);
@@ -97,7 +79,7 @@ TEST(FloorAcceleration, WithoutWheelsItTellsTheSame) {
 TEST(FloorAcceleration, GravityTellsTheUnit) {
   Accelerometer sensor;
   sensor.unit = 9.80665;
-  const SyntheticDrive drive = FourFloors(2);
+  const SyntheticDrive drive = FourFloors(2, 100.0);
   const auto rides = Feel(drive, sensor, 2).FindRides(TrackOf(drive), {});
   EXPECT_TRUE(rides.usable);
   EXPECT_EQ(rides.transits.size(), 6U);
@@ -107,7 +89,7 @@ TEST(FloorAcceleration, GravityTellsTheUnit) {
 TEST(FloorAcceleration, WithoutGravityItIsLeftOutAndSaid) {
   Accelerometer sensor;
   sensor.gravity = 0.0;
-  const SyntheticDrive drive = FourFloors(2);
+  const SyntheticDrive drive = FourFloors(2, 100.0);
   const auto rides = Feel(drive, sensor, 2).FindRides(TrackOf(drive), {});
   EXPECT_FALSE(rides.usable);
   EXPECT_TRUE(rides.transits.empty());

@@ -8,9 +8,29 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/wheel_track.hpp"
 #include "motion/synthetic_drive.hpp"
 
 namespace masked_mapper {
+
+inline WheelTrack TrackOf(const SyntheticDrive& drive) {
+  WheelTrack track;
+  for (const SyntheticDrive::State& state : drive.states()) {
+    track.Observe({state.stamp, state.T_odom_robot});
+  }
+  return track;
+}
+
+/// By elevator to 1, 3, 0, 2, 1 and 0, with so long on each.
+inline SyntheticDrive FourFloors(unsigned seed, double roam_s) {
+  SyntheticDrive drive({0.0, 4.0, 7.5, 11.0}, 0, seed);
+  drive.Roam(200.0);
+  for (const std::size_t floor : {1, 3, 0, 2, 1, 0}) {
+    drive.TakeElevator(floor);
+    drive.Roam(roam_s);
+  }
+  return drive;
+}
 
 struct FloorScore {
   double right_share = 0.0;  ///< of states outside transit, that stand on the floor they stood on

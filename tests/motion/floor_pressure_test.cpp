@@ -12,14 +12,6 @@
 namespace masked_mapper {
 namespace {
 
-WheelTrack TrackOf(const SyntheticDrive& drive) {
-  WheelTrack track;
-  for (const SyntheticDrive::State& state : drive.states()) {
-    track.Observe({state.stamp, state.T_odom_robot});
-  }
-  return track;
-}
-
 FloorTimeline Timeline(const std::vector<PressureReading>& pressure, const WheelTrack& track) {
   const StoreyOptions storeys;
   return TimelineOfTransits(TransitsOfPressure(HeightsOfPressure(pressure, {}), track, {}, storeys),
@@ -34,22 +26,11 @@ void ExpectRight(const FloorTimeline& timeline, const SyntheticDrive& drive, std
   EXPECT_LT(score.worst_elevation, 0.3) << "m";
 }
 
-/// 0 to 1 to 3 and back.
-SyntheticDrive FourFloors(unsigned seed) {
-  SyntheticDrive drive({0.0, 4.0, 7.5, 11.0}, 0, seed);
-  drive.Roam(200.0);
-  for (const std::size_t floor : {1, 3, 0, 2, 1, 0}) {
-    drive.TakeElevator(floor);
-    drive.Roam(120.0);
-  }
-  return drive;
-}
-
 TEST(FloorPressure, AnyRateWillDo) {
   for (const double rate : {0.2, 0.5, 1.0, 2.0, 5.0, 50.0}) {
     SCOPED_TRACE(std::to_string(rate) + " Hz");
     for (unsigned seed = 1; seed <= 5; ++seed) {
-      const SyntheticDrive drive = FourFloors(seed);
+      const SyntheticDrive drive = FourFloors(seed, 120.0);
       SyntheticBarometer barometer;
       barometer.rate = rate;
       ExpectRight(Timeline(barometer.Read(drive, seed), TrackOf(drive)), drive, 4);
@@ -58,7 +39,7 @@ TEST(FloorPressure, AnyRateWillDo) {
 }
 
 TEST(FloorPressure, APerfectBarometerTellsTheSame) {
-  const SyntheticDrive drive = FourFloors(1);
+  const SyntheticDrive drive = FourFloors(1, 120.0);
   SyntheticBarometer barometer;
   barometer.sigma = 0.0;
   barometer.weather = 0.0;
@@ -69,7 +50,7 @@ TEST(FloorPressure, APerfectBarometerTellsTheSame) {
 
 TEST(FloorPressure, WithoutWheelsTheHeightsAloneTellWhen) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const SyntheticDrive drive = FourFloors(seed);
+    const SyntheticDrive drive = FourFloors(seed, 120.0);
     ExpectRight(Timeline(SyntheticBarometer{}.Read(drive, seed), WheelTrack{}), drive, 4);
   }
 }
@@ -101,7 +82,7 @@ TEST(FloorPressure, ADoorThatChangesThePressureIsNoFloor) {
 
 TEST(FloorPressure, TransitIsTheTimeInTheClosedCab) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const SyntheticDrive drive = FourFloors(seed);
+    const SyntheticDrive drive = FourFloors(seed, 120.0);
     const FloorScore score =
         ScoreFloors(Timeline(SyntheticBarometer{}.Read(drive, seed), TrackOf(drive)), drive);
     EXPECT_EQ(score.cab_share, 1.0);
@@ -171,7 +152,7 @@ TEST(FloorPressure, ALogMayBeginAndEndInTheElevator) {
 }
 
 TEST(FloorPressure, ALogMayBeginAndEndInMidRide) {
-  const SyntheticDrive whole = FourFloors(6);
+  const SyntheticDrive whole = FourFloors(6, 120.0);
   const double begin = 0.5 * (whole.rides().front().start + whole.rides().front().end);
   const double end = 0.5 * (whole.rides().back().start + whole.rides().back().end);
   WheelTrack track;
@@ -195,7 +176,7 @@ TEST(FloorPressure, GapsHideNoRide) {
   for (const double gap : {10.0, 60.0, 200.0}) {
     SCOPED_TRACE(std::to_string(gap) + " s");
     for (unsigned seed = 1; seed <= 5; ++seed) {
-      const SyntheticDrive drive = FourFloors(seed);
+      const SyntheticDrive drive = FourFloors(seed, 120.0);
       std::vector<PressureReading> readings;
       const double middle = 0.5 * (drive.rides()[1].start + drive.rides()[1].end);
       for (const PressureReading& reading : SyntheticBarometer{}.Read(drive, seed)) {
@@ -212,7 +193,7 @@ TEST(FloorPressure, GapsHideNoRide) {
 
 TEST(FloorPressure, SpikesMakeNoFloors) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const SyntheticDrive drive = FourFloors(seed);
+    const SyntheticDrive drive = FourFloors(seed, 120.0);
     std::vector<PressureReading> readings = SyntheticBarometer{}.Read(drive, seed);
     std::mt19937 random(seed);
     for (int k = 0; k < 300; ++k) {
@@ -224,7 +205,7 @@ TEST(FloorPressure, SpikesMakeNoFloors) {
 }
 
 TEST(FloorPressure, TinyInputsAreNoHarm) {
-  const SyntheticDrive drive = FourFloors(1);
+  const SyntheticDrive drive = FourFloors(1, 120.0);
   const std::vector<PressureReading> all = SyntheticBarometer{}.Read(drive, 1);
   for (std::size_t count = 0; count < 20; ++count) {
     const std::vector<PressureReading> some(all.begin(),
