@@ -12,16 +12,4 @@ case "${1:-}" in
   *) echo "setup.sh: unknown option $1 (try --help)" >&2; exit 2 ;;
 esac
 
-missing=()
-for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
-  [[ $status == "install ok installed" ]] || missing+=("$package")
-done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
-
-as_root=()
-[[ $(id -u) -eq 0 ]] || as_root=(sudo)
-echo "setup: installing ${#missing[@]} Debian packages: ${missing[*]}"
-"${as_root[@]}" apt-get -q update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends \
-  "${missing[@]}"
+"$(dirname "$0")/../scripts/install_packages.sh" "${packages[@]}"

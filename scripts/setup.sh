@@ -24,30 +24,4 @@ case "${1:-}" in
   *) echo "setup.sh: unknown option $1 (try --help)" >&2; exit 2 ;;
 esac
 
-missing=()
-for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
-  [[ $status == "install ok installed" ]] || missing+=("$package")
-done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
-
-as_root=()
-if [[ $(id -u) -ne 0 ]]; then
-  if ! command -v sudo >/dev/null; then
-    echo "setup.sh: these Debian packages are missing, and installing them needs root or sudo:" >&2
-    echo "  ${missing[*]}" >&2
-    exit 1
-  fi
-  as_root=(sudo)
-fi
-
-echo "setup: installing ${#missing[@]} Debian packages (a few minutes): ${missing[*]}"
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-apt_get() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Dpkg::Use-Pty=0 "$@" >"$log" 2>&1 ||
-    { tail -n 30 "$log" >&2; echo "setup.sh: apt-get $1 failed" >&2; exit 1; }
-}
-apt_get update
-apt_get install --no-install-recommends "${missing[@]}"
-echo "setup: done"
+"$(dirname "$0")/install_packages.sh" "${packages[@]}"
