@@ -3,10 +3,12 @@
 #include "masked_mapper/mapping/masked_mapper.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "masked_mapper/geometry/mahalanobis.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/mapping/trajectory.hpp"
 #include "masked_mapper/optimization/closure_audit.hpp"
@@ -14,7 +16,11 @@
 namespace masked_mapper {
 namespace {
 
+constexpr const char* kBelowMinScore = "score below the minimum";
+constexpr const char* kDoesNotFit = "does not fit the surroundings of the older node";
+constexpr const char* kAlikeAlongALine = "the place looks alike along a line";
 constexpr const char* kTooFewVotes = "too few votes";
+constexpr const char* kFitsTheMap = "fits the optimised map";
 
 /// Whether a match leaves its least certain direction open.
 bool IsAmbiguous(const Eigen::Matrix3d& covariance, const AmbiguityOptions& options) {
@@ -195,13 +201,13 @@ std::vector<Hypothesis> MaskedMapper::MatchScans(NodeId new_node,
     attempt.score = results[i].score;
     attempt.mahalanobis = candidates[i].mahalanobis;
     if (results[i].outcome != MatchOutcome::kMatched) {
-      attempt.reason = "score below the minimum";
+      attempt.reason = kBelowMinScore;
     } else {
       attempt.state = ClosureState::kHypothesis;
       if (options_.motion.source != MotionSource::kOdometry && !RefineMatch(attempt)) {
-        attempt.reason = "does not fit the surroundings of the older node";
+        attempt.reason = kDoesNotFit;
       } else if (IsAmbiguous(attempt.T_a_b.covariance, options_.ambiguity)) {
-        attempt.reason = "the place looks alike along a line";
+        attempt.reason = kAlikeAlongALine;
       } else {
         attempt.reason = kTooFewVotes;
         attempt_of_hypothesis_.push_back(result_.attempts.size());
@@ -278,31 +284,120 @@ void MaskedMapper::Polish() {
   std::stable_sort(open.begin(), open.end(), [&](std::size_t one, std::size_t other) {
     return result_.attempts[one].b < result_.attempts[other].b;
   });
+  const double most_m = options_.polish.most_m;
   const double most_rad = DegToRad(options_.polish.most_deg);
   for (const std::size_t i : open) {
     ClosureAttempt& attempt = result_.attempts[i];
-    const Node& a = result_.graph.nodes()[static_cast<std::size_t>(attempt.a)];
-    const Node& b = result_.graph.nodes()[static_cast<std::size_t>(attempt.b)];
-    const auto is_near = [&](const Pose2& T_a_b) {
-      const Pose2 T_map_a_b = Between(a.T_world_robot, b.T_world_robot);
-      return Distance(T_a_b, T_map_a_b) <= options_.polish.most_m &&
-             std::abs(WrapAngle(T_a_b.theta - T_map_a_b.theta)) <= most_rad;
-    };
-    if (!is_near(attempt.T_a_b.mean)) continue;
+    if (!FitsTheMap(attempt)) continue;
     UncertainPose2 guess;
-    guess.mean = Between(b.T_world_robot, a.T_world_robot);
-    guess.covariance.diagonal() << options_.polish.most_m * options_.polish.most_m,
-        options_.polish.most_m * options_.polish.most_m, most_rad * most_rad;
-    const std::optional<SubmapMatch> again = submaps_.Refine(attempt.b, *a.points_in_robot, guess);
+    guess.mean = MapBetween(attempt.b, attempt.a);
+    guess.covariance.diagonal() << most_m * most_m, most_m * most_m, most_rad * most_rad;
+    const std::optional<SubmapMatch> again =
+        submaps_.Refine(attempt.b, *submaps_.PointsAt(attempt.a), guess);
     if (!again) continue;
-    const UncertainPose2 T_a_b = Inverse(again->T_node_robot);
-    if (!is_near(T_a_b.mean) || IsAmbiguous(T_a_b.covariance, options_.ambiguity)) continue;
-    attempt.T_a_b = T_a_b;
-    attempt.agreement = again->inlier_share;
-    attempt.state = ClosureState::kValidated;
-    attempt.reason = "fits the optimised map";
-    attempt_of_edge_[result_.graph.AddEdge({attempt.a, attempt.b, T_a_b, EdgeKind::kClosure})] = i;
+    ClosureAttempt late = attempt;
+    late.T_a_b = Inverse(again->T_node_robot);
+    late.agreement = again->inlier_share;
+    if (!FitsTheMap(late) || IsAmbiguous(late.T_a_b.covariance, options_.ambiguity)) continue;
+    EnterLate(i, late);
+    attempt = late;
   }
+}
+
+bool MaskedMapper::FitsTheMap(const ClosureAttempt& attempt) const {
+  const Pose2 T_map_a_b = MapBetween(attempt.a, attempt.b);
+  return Distance(attempt.T_a_b.mean, T_map_a_b) <= options_.polish.most_m &&
+         std::abs(WrapAngle(attempt.T_a_b.mean.theta - T_map_a_b.theta)) <=
+             DegToRad(options_.polish.most_deg);
+}
+
+Pose2 MaskedMapper::MapBetween(NodeId from, NodeId to) const {
+  const std::vector<Node>& nodes = result_.graph.nodes();
+  return Between(nodes[static_cast<std::size_t>(from)].T_world_robot,
+                 nodes[static_cast<std::size_t>(to)].T_world_robot);
+}
+
+// From the map, and as sure as the surest way through the graph; none where that cannot vouch for a
+// closure.
+std::optional<UncertainPose2> MaskedMapper::SureWay(NodeId from, NodeId to) const {
+  for (const ProjectedNode& projected :
+       DijkstraProjection(result_.graph, from, {options_.validator.sure_loop_trace})) {
+    if (projected.node != to) continue;
+    return UncertainPose2{MapBetween(from, to), projected.T_source_node.covariance};
+  }
+  return std::nullopt;
+}
+
+void MaskedMapper::EnterLate(std::size_t place, ClosureAttempt& attempt) {
+  attempt.state = ClosureState::kValidated;
+  attempt.reason = kFitsTheMap;
+  attempt_of_edge_[result_.graph.AddEdge(
+      {attempt.a, attempt.b, attempt.T_a_b, EdgeKind::kClosure})] = place;
+}
+
+// Corridors between masked places, passed again: what no mask offered is offered now, where the map
+// has two nodes at one place and no walk along the graph says so. A sure way through the graph has
+// to vouch for it, as in the validator; it may also say how far along where a place looks alike
+// along a line, but is not counted again in the closure.
+void MaskedMapper::CloseOpenRevisits() {
+  const std::vector<Edge>& edges = result_.graph.edges();
+  const bool any_closed = std::any_of(
+      edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; });
+  if (!any_closed) return;  // dead reckoning stays what it is
+  const OpenRevisits revisits(result_.graph, options_.polish.revisits);
+  for (NodeId a = 0; static_cast<std::size_t>(a) < result_.graph.nodes().size(); ++a) {
+    std::vector<NodeId> open = revisits.Of(a);
+    while (!open.empty()) {
+      const NodeId b = open.front();
+      open.erase(open.begin());
+      if (!CloseRevisit(a, b)) continue;
+      // What closed here may have joined the others, too.
+      const std::vector<NodeId> still_open = revisits.Of(a);
+      const auto is_joined = [&](NodeId node) {
+        return std::find(still_open.begin(), still_open.end(), node) == still_open.end();
+      };
+      open.erase(std::remove_if(open.begin(), open.end(), is_joined), open.end());
+    }
+  }
+}
+
+bool MaskedMapper::CloseRevisit(NodeId a, NodeId b) {
+  const std::optional<UncertainPose2> sure_way = SureWay(b, a);
+  if (!sure_way) return false;
+  const UncertainPose2& T_b_a = *sure_way;
+  const MatchPair pair{b, submaps_.PointsAt(b), submaps_.PointsAt(a), T_b_a};
+  if (!pair.points_in_reference || !pair.points_in_query) return false;
+  const MatchResult match = matcher_.Match({pair}).front();
+  ClosureAttempt attempt;
+  attempt.a = a;
+  attempt.b = b;
+  attempt.T_a_b = Inverse(T_b_a);
+  attempt.score = match.score;
+  attempt.mahalanobis =
+      MahalanobisDistance(T_b_a.mean.Translation(), T_b_a.covariance.topLeftCorner<2, 2>(),
+                          options_.candidates.match_range_m);
+  if (match.outcome != MatchOutcome::kMatched) {
+    attempt.reason = kBelowMinScore;
+  } else if (const auto refined = submaps_.Refine(b, *pair.points_in_query, T_b_a)) {
+    attempt.state = ClosureState::kHypothesis;
+    attempt.T_a_b = Inverse(refined->T_node_robot);
+    attempt.agreement = refined->inlier_share;
+    const Eigen::Matrix3d both =
+        (refined->T_node_robot.covariance.inverse() + T_b_a.covariance.inverse()).inverse();
+    if (!FitsTheMap(attempt)) {
+      attempt.reason = "disagrees with the optimised map";
+    } else if (IsAmbiguous(both, options_.ambiguity)) {
+      attempt.reason = kAlikeAlongALine;
+    } else {
+      EnterLate(result_.attempts.size(), attempt);
+    }
+  } else {
+    attempt.state = ClosureState::kHypothesis;
+    attempt.reason = kDoesNotFit;
+  }
+  const bool closed = attempt.state == ClosureState::kValidated;
+  result_.attempts.push_back(std::move(attempt));
+  return closed;
 }
 
 // With all closures in, those that disagree with the rest go before the map is written.
@@ -311,6 +406,7 @@ void MaskedMapper::Audit() {
   Optimize(options_.optimizer.solver, result_.graph);
   if (options_.motion.source != MotionSource::kOdometry) {
     Polish();
+    CloseOpenRevisits();
     Optimize(options_.optimizer.solver, result_.graph);
   }
   const std::vector<EdgeId> wrong =

@@ -66,6 +66,40 @@ const LocalMap& Submaps::SubmapOf(NodeId node) {
       .first->second.map;
 }
 
+ScanPoints::ConstPtr Submaps::PointsAt(NodeId node) const {
+  const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
+  if (center.HasScan()) return center.points_in_robot;
+  const std::vector<KeptScan>& kept = result_.kept_scans;
+  const auto after =
+      std::lower_bound(kept.begin(), kept.end(), center.stamp,
+                       [](const KeptScan& scan, double stamp) { return scan.scan.stamp < stamp; });
+  const KeptScan* nearest = nullptr;
+  Pose2 T_node_scan;
+  const auto look_at = [&](const KeptScan& scan) {
+    const TrajectoryPose& pose = result_.trajectory[scan.trajectory_index];
+    const Pose2 T_node_here = Between(center.T_odom_robot, pose.T_odom_robot);
+    const double distance = T_node_here.Translation().norm();
+    if (pose.floor != center.floor || distance > options_.half_length_m) return;
+    if (nearest != nullptr && distance >= T_node_scan.Translation().norm()) return;
+    nearest = &scan;
+    T_node_scan = T_node_here;
+  };
+  if (after != kept.begin()) look_at(*std::prev(after));
+  if (after != kept.end()) look_at(*after);
+  if (nearest == nullptr) return nullptr;
+  const ScanPoints::ConstPtr points_in_scan = PointsInRobot(nearest->scan);
+  const ScanPoints::Ptr points_in_node(new ScanPoints);
+  const double c = std::cos(T_node_scan.theta);
+  const double s = std::sin(T_node_scan.theta);
+  for (const pcl::PointXY& point : *points_in_scan) {
+    pcl::PointXY moved;
+    moved.x = static_cast<float>(T_node_scan.x + c * point.x - s * point.y);
+    moved.y = static_cast<float>(T_node_scan.y + s * point.x + c * point.y);
+    points_in_node->push_back(moved);
+  }
+  return points_in_node;
+}
+
 std::optional<SubmapMatch> Submaps::Refine(NodeId node, const ScanPoints& points_in_robot,
                                            const UncertainPose2& T_node_robot) {
   Eigen::Matrix3d prior_covariance = T_node_robot.covariance;

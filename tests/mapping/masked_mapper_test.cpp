@@ -5,6 +5,7 @@
 
 #include "mapping/ring_drive.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/loop_closure/open_revisits.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -199,6 +200,56 @@ TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
       EXPECT_EQ(late, 0);
     }
   }
+}
+
+TEST(MaskedMapper, ACorridorPassedAgainIsClosedBetweenItsMaskedPlaces) {
+  const RingDrive drive(2.3, 0.2);
+  const auto truth_at = [&](const Node& node) {
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      if (drive.scans[i].stamp == node.stamp) return drive.truth[i];
+    }
+    ADD_FAILURE() << "no scan at a node";
+    return Pose2();
+  };
+  std::size_t offered = 0;
+  for (const double distance_m : {0.0, 2.0}) {
+    Options options = OptionsFor(MotionSource::kFused);
+    options.polish.revisits.distance_m = distance_m;
+    const MappingResult map = Map(drive, "openings", options);
+    const std::vector<Node>& nodes = map.graph.nodes();
+    int between_scans = 0;
+    for (const ClosureAttempt& attempt : map.attempts) {
+      const Node& a = nodes[static_cast<std::size_t>(attempt.a)];
+      const Node& b = nodes[static_cast<std::size_t>(attempt.b)];
+      if (a.HasScan() && b.HasScan()) continue;
+      ++between_scans;
+      EXPECT_EQ(attempt.state, ClosureState::kValidated) << attempt.reason;
+      EXPECT_GT(attempt.a, attempt.b);
+      EXPECT_GT(attempt.score, options.matcher.min_score);
+      const Pose2 error = Between(attempt.T_a_b.mean, Between(truth_at(a), truth_at(b)));
+      EXPECT_LT(std::hypot(error.x, error.y), 0.1) << "m";
+      EXPECT_LT(RadToDeg(std::abs(error.theta)), 1.0) << "deg";
+    }
+    std::size_t open = 0;
+    const OpenRevisits revisits(map.graph, {});
+    for (NodeId id = 0; static_cast<std::size_t>(id) < nodes.size(); ++id) {
+      open += revisits.Of(id).size();
+    }
+    if (distance_m > 0.0) {
+      EXPECT_GT(between_scans, 0);
+      EXPECT_EQ(open, 0U);
+      EXPECT_LE(map.attempts.size(), offered + open + 12) << "one closure joins its surroundings";
+    } else {
+      EXPECT_EQ(between_scans, 0);
+      EXPECT_GT(open, 0U) << "or the test shows nothing";
+      offered = map.attempts.size();
+    }
+  }
+}
+
+TEST(MaskedMapper, DeadReckoningStaysDeadReckoningWhenItIsGood) {
+  const RingDrive drive(2.3, 0.0);
+  EXPECT_TRUE(Map(drive, "never", OptionsFor(MotionSource::kFused)).attempts.empty());
 }
 
 }  // namespace

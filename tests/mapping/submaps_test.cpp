@@ -55,5 +55,32 @@ TEST(Submaps, AScanOfAnotherPlaceIsNotForcedIn) {
   EXPECT_FALSE(submaps.Refine(0, ScanPoints(), coarse));
 }
 
+TEST(Submaps, AnOdometryNodeSeesWhatTheScanKeptNearestSaw) {
+  const RingDrive drive(0.25, 0.0);
+  MappingResult map = FirstLeg(drive, 100);
+  // Between two kept scans, nearer to the later one.
+  Node node;
+  node.stamp = 0.5 * (drive.scans[60].stamp + drive.scans[61].stamp);
+  node.T_odom_robot = drive.truth[60] * Pose2{0.15, 0.0, DegToRad(5.0)};
+  const NodeId id = map.graph.AddNode(node);
+  const ScanPoints::ConstPtr own = PointsInRobot(drive.scans[7]);
+  node.points_in_robot = own;
+  const NodeId with_scan = map.graph.AddNode(node);
+  const Submaps submaps({}, {}, map);
+  EXPECT_EQ(submaps.PointsAt(with_scan), own);
+  const ScanPoints::ConstPtr seen = submaps.PointsAt(id);
+  const ScanPoints::ConstPtr kept = PointsInRobot(drive.scans[61]);
+  ASSERT_TRUE(seen);
+  ASSERT_EQ(seen->size(), kept->size());
+  for (std::size_t i = 0; i < seen->size(); ++i) {
+    const Eigen::Vector2d in_world =
+        node.T_odom_robot * Eigen::Vector2d((*seen)[i].x, (*seen)[i].y);
+    const Eigen::Vector2d expected = drive.truth[61] * Eigen::Vector2d((*kept)[i].x, (*kept)[i].y);
+    EXPECT_LT((in_world - expected).norm(), 1e-4) << "m";
+  }
+  map.kept_scans.clear();
+  EXPECT_FALSE(submaps.PointsAt(id)) << "nothing was kept";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -57,6 +57,12 @@ class MaskedMapper {
   bool RefineMatch(ClosureAttempt& attempt);
   void AddValidated(const std::vector<HypothesisId>& validated);
   void Polish();
+  void CloseOpenRevisits();
+  bool CloseRevisit(NodeId a, NodeId b);
+  bool FitsTheMap(const ClosureAttempt& attempt) const;
+  Pose2 MapBetween(NodeId from, NodeId to) const;
+  std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
+  void EnterLate(std::size_t place, ClosureAttempt& attempt);
   void Audit();
   void RecordScan(const LaserScan& scan, const FloorInterval& interval);
 

@@ -4,6 +4,7 @@
 
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/open_revisits.hpp"
 #include "masked_mapper/loop_closure/validator.hpp"
 #include "masked_mapper/mapping/submap_options.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
@@ -39,6 +40,7 @@ struct AmbiguityOptions {
 struct PolishOptions {
   double most_m = 0.2;  ///< that the match may be away from the map, before and after
   double most_deg = 2.0;
+  OpenRevisitOptions revisits;  ///< which pairs are offered late, as no mask offered them
 };
 
 /// When two visits of floors that no sensor tells apart are one floor (mapping/floor_joining.hpp).

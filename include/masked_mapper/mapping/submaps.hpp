@@ -35,6 +35,10 @@ class Submaps {
   std::optional<SubmapMatch> Refine(NodeId node, const ScanPoints& points_in_robot,
                                     const UncertainPose2& T_node_robot);
 
+  /// What was seen at `node`, in its frame: its own scan, or, of an odometry-only node, the scan
+  /// kept nearest to it. Null when none was kept there.
+  ScanPoints::ConstPtr PointsAt(NodeId node) const;
+
  private:
   const LocalMap& SubmapOf(NodeId node);
   LocalMap Build(NodeId node) const;
