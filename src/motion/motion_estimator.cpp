@@ -26,8 +26,10 @@ void MotionEstimator::RestartScans() {
   wheel_noise_.Restart();
 }
 
+// What was seen of the cab on the way into it stays: a map begun anew is as good as its first scan,
+// and the robot may turn at once.
 void MotionEstimator::EnterTransit() {
-  scan_odometry_.Restart(options_.scans.transit_reach_m);
+  scan_odometry_.SetReach(options_.scans.transit_reach_m);
   wheel_noise_.Restart();
 }
 

@@ -39,8 +39,8 @@ double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta 
 
 }  // namespace
 
-void ScanOdometry::Restart(double reach_m) {
-  reach_m_ = reach_m;
+void ScanOdometry::Restart() {
+  reach_m_ = std::numeric_limits<double>::infinity();
   map_.reset();
   next_map_.reset();
   T_map_keyframe_.reset();
@@ -140,6 +140,10 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     // Scans of a robot at rest err each on its own: a few more settle what a poor view left open.
     const bool is_settled = std::sqrt(matched_heading_variance_) < DegToRad(options_.settled_deg);
     if (is_settled || rest_scans_ >= options_.rest_scans) {
+      // A young map is as noisy as its few scans, and all that follows is held against it.
+      if (map_->scans() < static_cast<std::size_t>(options_.rest_scans)) {
+        map_->Add(*map_points, T_map_robot_);
+      }
       // The next match answers for this step too: its uncertainty is not counted twice.
       step.covariance.setZero();
       return step;

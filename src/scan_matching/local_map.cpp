@@ -12,6 +12,56 @@ namespace {
 
 double Square(double value) { return value * value; }
 
+// Which way the surface of each point faces, in the robot frame: across the line through its
+// neighbours in beam order, towards the robot. A point on its own faces the robot.
+std::vector<Eigen::Vector2f> NormalsOf(const ScanPoints& points) {
+  constexpr std::ptrdiff_t kMostNeighbours = 8;  // to each side: beams close by tell no more
+  constexpr float kReach = 0.15F;                // m, and
+  constexpr float kReachPerMetre = 0.04F;        // of range: far beams lie apart
+  constexpr float kLeastBase = 0.04F;            // m, below which noise turns the line
+  const auto size = static_cast<std::ptrdiff_t>(points.size());
+  const auto at = [&](std::ptrdiff_t i) {
+    const pcl::PointXY& point = points[static_cast<std::size_t>(i)];
+    return Eigen::Vector2f(point.x, point.y);
+  };
+  std::vector<Eigen::Vector2f> normals;
+  normals.reserve(points.size());
+  for (std::ptrdiff_t i = 0; i < size; ++i) {
+    const Eigen::Vector2f point = at(i);
+    const float reach = kReach + kReachPerMetre * point.norm();
+    const auto is_near = [&](std::ptrdiff_t other) {
+      return other >= 0 && other < size && std::abs(other - i) <= kMostNeighbours &&
+             (at(other) - point).squaredNorm() <= reach * reach;
+    };
+    std::ptrdiff_t first = i;
+    std::ptrdiff_t last = i;
+    while (is_near(first - 1)) --first;
+    while (is_near(last + 1)) ++last;
+    const Eigen::Vector2f along = at(last) - at(first);
+    Eigen::Vector2f normal = -point;
+    if (along.squaredNorm() > kLeastBase * kLeastBase) {
+      normal = {-along.y(), along.x()};
+      if (normal.dot(point) > 0.0F) normal = -normal;
+    }
+    normals.push_back(normal);
+  }
+  return normals;
+}
+
+// Between the directions in which most surfaces of a building face (four, square to each other), so
+// that none of them falls on the border of front and back.
+double FrontOf(const std::vector<Eigen::Vector2f>& normals_in_robot, double theta) {
+  double c = 0.0;
+  double s = 0.0;
+  for (const Eigen::Vector2f& normal : normals_in_robot) {
+    const double angle = 4.0 * (std::atan2(normal.y(), normal.x()) + theta);
+    if (!std::isfinite(angle)) continue;
+    c += std::cos(angle);
+    s += std::sin(angle);
+  }
+  return 0.25 * (std::atan2(s, c) + kPi);
+}
+
 }  // namespace
 
 LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
@@ -44,26 +94,49 @@ void LocalMap::Add(const std::vector<PosedPoints>& scans) {
   UpdateAround(std::move(touched));
 }
 
+std::size_t LocalMap::AddSlot(int index) {
+  std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(index)];
+  if (slot < 0) {
+    slot = static_cast<std::int32_t>(moments_.size() / kSides);
+    moments_.resize(moments_.size() + kSides);
+    distributions_.resize(distributions_.size() + kSides + 1);
+  }
+  return static_cast<std::size_t>(slot);
+}
+
+std::vector<std::uint8_t> LocalMap::SidesOf(const std::vector<Eigen::Vector2f>& normals,
+                                            double theta) const {
+  const auto c = static_cast<float>(std::cos(front_rad_ - theta));
+  const auto s = static_cast<float>(std::sin(front_rad_ - theta));
+  std::vector<std::uint8_t> sides;
+  sides.reserve(normals.size());
+  for (const Eigen::Vector2f& normal : normals) {
+    const bool ahead = c * normal.x() + s * normal.y() >= 0.0F;
+    const bool left = c * normal.y() - s * normal.x() >= 0.0F;
+    sides.push_back(static_cast<std::uint8_t>((ahead ? 0 : 1) + (left ? 0 : 2)));
+  }
+  return sides;
+}
+
 void LocalMap::Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
                       std::vector<int>& touched) {
+  const std::vector<Eigen::Vector2f> normals = NormalsOf(points_in_robot);
+  if (scans_ == 0) front_rad_ = FrontOf(normals, T_map_robot.theta);
+  const std::vector<std::uint8_t> sides = SidesOf(normals, T_map_robot.theta);
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
-  for (const pcl::PointXY& point : points_in_robot) {
+  for (std::size_t i = 0; i < points_in_robot.size(); ++i) {
+    const pcl::PointXY& point = points_in_robot[i];
     const double x = T_map_robot.x + c * point.x - s * point.y;
     const double y = T_map_robot.y + s * point.x + c * point.y;
     const int index = Index(x, y);
     if (index < 0) continue;
-    std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(index)];
-    if (slot < 0) {
-      slot = static_cast<std::int32_t>(moments_.size());
-      moments_.emplace_back();
-      distributions_.emplace_back();
-    }
+    const std::size_t slot = AddSlot(index);
     const int column = index % width_;
     const int row = index / width_;
     const double dx = x - (corner_.x() + (column + 0.5) * options_.cell_m);
     const double dy = y - (corner_.y() + (row + 0.5) * options_.cell_m);
-    Moments& moments = moments_[static_cast<std::size_t>(slot)];
+    Moments& moments = moments_[kSides * slot + sides[i]];
     moments.count += 1.0;
     moments.x += dx;
     moments.y += dy;
@@ -90,12 +163,12 @@ void LocalMap::UpdateAround(std::vector<int> touched) {
     }
   }
   sort_unique(changed);
-  for (const int index : changed) UpdateDistribution(index % width_, index / width_);
+  for (const int index : changed) UpdateDistributions(index % width_, index / width_);
 }
 
-void LocalMap::UpdateDistribution(int column, int row) {
+void LocalMap::UpdateDistributions(int column, int row) {
   const int window = options_.window_cells;
-  Moments sum;
+  Moments sums[kSides + 1];  // the last: of all sides
   for (int dy = -window; dy <= window; ++dy) {
     for (int dx = -window; dx <= window; ++dx) {
       const int neighbour_column = column + dx;
@@ -107,63 +180,78 @@ void LocalMap::UpdateDistribution(int column, int row) {
       const std::int32_t slot =
           slot_of_cell_[static_cast<std::size_t>(neighbour_row * width_ + neighbour_column)];
       if (slot < 0) continue;
-      const Moments& m = moments_[static_cast<std::size_t>(slot)];
-      if (m.count == 0.0) continue;
       const double ox = dx * options_.cell_m;
       const double oy = dy * options_.cell_m;
-      sum.count += m.count;
-      sum.x += m.x + m.count * ox;
-      sum.y += m.y + m.count * oy;
-      sum.xx += m.xx + 2.0 * ox * m.x + m.count * ox * ox;
-      sum.xy += m.xy + ox * m.y + oy * m.x + m.count * ox * oy;
-      sum.yy += m.yy + 2.0 * oy * m.y + m.count * oy * oy;
+      for (std::size_t side = 0; side < kSides; ++side) {
+        const Moments& m = moments_[kSides * static_cast<std::size_t>(slot) + side];
+        if (m.count == 0.0) continue;
+        Moments& sum = sums[side];
+        sum.count += m.count;
+        sum.x += m.x + m.count * ox;
+        sum.y += m.y + m.count * oy;
+        sum.xx += m.xx + 2.0 * ox * m.x + m.count * ox * ox;
+        sum.xy += m.xy + ox * m.y + oy * m.x + m.count * ox * oy;
+        sum.yy += m.yy + 2.0 * oy * m.y + m.count * oy * oy;
+      }
     }
   }
-  std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(row * width_ + column)];
-  if (slot < 0) {
-    slot = static_cast<std::int32_t>(moments_.size());
-    moments_.emplace_back();
-    distributions_.emplace_back();
+  Moments& all = sums[kSides];
+  for (std::size_t side = 0; side < kSides; ++side) {
+    all.count += sums[side].count;
+    all.x += sums[side].x;
+    all.y += sums[side].y;
+    all.xx += sums[side].xx;
+    all.xy += sums[side].xy;
+    all.yy += sums[side].yy;
   }
-  Distribution& d = distributions_[static_cast<std::size_t>(slot)];
-  const double mx = sum.x / sum.count;
-  const double my = sum.y / sum.count;
-  d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
-  d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
-  const double xx = sum.xx / sum.count - mx * mx;
-  const double xy = sum.xy / sum.count - mx * my;
-  const double yy = sum.yy / sum.count - my * my;
-  const double mean = 0.5 * (xx + yy);
-  const double spread = std::hypot(0.5 * (xx - yy), xy);
-  const double small = std::max(0.0, mean - spread);
-  const double large = mean + spread;
-  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the larger variance
-  d.normal_x = static_cast<float>(-std::sin(angle));
-  d.normal_y = static_cast<float>(std::cos(angle));
-  d.small = static_cast<float>(small);
-  d.large = static_cast<float>(large);
-  // Three points at the least, and spread over more than one cell: else a line is a guess.
-  d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
-              large > Square(0.5 * options_.cell_m);
-  d.is_known = sum.count >= 2.0;
+  const std::size_t slot = AddSlot(row * width_ + column);
+  for (std::size_t side = 0; side <= kSides; ++side) {
+    const Moments& sum = sums[side];
+    if (sum.count == 0.0) continue;
+    Distribution& d = distributions_[(kSides + 1) * slot + side];
+    const double mx = sum.x / sum.count;
+    const double my = sum.y / sum.count;
+    d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
+    d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
+    const double xx = sum.xx / sum.count - mx * mx;
+    const double xy = sum.xy / sum.count - mx * my;
+    const double yy = sum.yy / sum.count - my * my;
+    const double mean = 0.5 * (xx + yy);
+    const double spread = std::hypot(0.5 * (xx - yy), xy);
+    const double small = std::max(0.0, mean - spread);
+    const double large = mean + spread;
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the larger variance
+    d.normal_x = static_cast<float>(-std::sin(angle));
+    d.normal_y = static_cast<float>(std::cos(angle));
+    d.small = static_cast<float>(small);
+    d.large = static_cast<float>(large);
+    // Three points at the least, and spread over more than one cell: else a line is a guess.
+    d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
+                large > Square(0.5 * options_.cell_m);
+    d.is_known = sum.count >= 2.0;
+  }
 }
 
-double LocalMap::Step(const ScanPoints& points, const Pose2& T_map_robot, double sigma_m,
-                      Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const {
+double LocalMap::Step(const ScanPoints& points, const std::vector<std::uint8_t>& sides,
+                      const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+                      Eigen::Vector3d& gradient) const {
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
   const double noise = Square(sigma_m);
   const double outlier = 1.0 / Square(options_.outlier_sigmas);
   double inliers = 0.0;
   double h00 = 0, h01 = 0, h02 = 0, h11 = 0, h12 = 0, h22 = 0, g0 = 0, g1 = 0, g2 = 0;
-  for (const pcl::PointXY& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const pcl::PointXY& point = points[i];
     const double rx = c * point.x - s * point.y;
     const double ry = s * point.x + c * point.y;
     const int index = Index(T_map_robot.x + rx, T_map_robot.y + ry);
     if (index < 0) continue;
     const std::int32_t slot = slot_of_cell_[static_cast<std::size_t>(index)];
     if (slot < 0) continue;
-    const Distribution& d = distributions_[static_cast<std::size_t>(slot)];
+    // The face that is seen, where it is known as a line; else all that is known of the place.
+    const Distribution* of_sides = &distributions_[(kSides + 1) * static_cast<std::size_t>(slot)];
+    const Distribution& d = of_sides[of_sides[sides[i]].is_line ? sides[i] : kSides];
     if (!d.is_known) continue;
     const double ex = T_map_robot.x + rx - d.mean_x;
     const double ey = T_map_robot.y + ry - d.mean_y;
@@ -201,7 +289,8 @@ double LocalMap::Agreement(const ScanPoints& points_in_robot, const Pose2& T_map
   if (points_in_robot.empty()) return 0.0;
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
-  return Step(points_in_robot, T_map_robot, sigma_m, hessian, gradient) /
+  const std::vector<std::uint8_t> sides = SidesOf(NormalsOf(points_in_robot), T_map_robot.theta);
+  return Step(points_in_robot, sides, T_map_robot, sigma_m, hessian, gradient) /
          static_cast<double>(points_in_robot.size());
 }
 
@@ -224,11 +313,14 @@ Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_
   result.T_map_robot = T_map_robot_guess;
   if (points_in_robot.empty()) return result;
   double sigma = options_.first_sigma_m;
+  // A guess turns by less than what lies between the walls of a building and the border of sides.
+  const std::vector<std::uint8_t> sides =
+      SidesOf(NormalsOf(points_in_robot), T_map_robot_guess.theta);
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
   for (; result.iterations < options_.max_iterations; ++result.iterations) {
     Pose2& pose = result.T_map_robot;
-    Step(points_in_robot, pose, sigma, hessian, gradient);
+    Step(points_in_robot, sides, pose, sigma, hessian, gradient);
     // The scan's own weight shrinks by the inflation, so that the prior is weighed against what the
     // scan really knows.
     const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
@@ -252,7 +344,7 @@ Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_
     sigma = std::max(options_.point_sigma_m, 0.5 * sigma);
   }
   result.inlier_share =
-      Step(points_in_robot, result.T_map_robot, options_.point_sigma_m, hessian, gradient) /
+      Step(points_in_robot, sides, result.T_map_robot, options_.point_sigma_m, hessian, gradient) /
       static_cast<double>(points_in_robot.size());
   result.information = hessian / options_.covariance_inflation;
   return result;

@@ -172,5 +172,37 @@ TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   EXPECT_NEAR(path.y, 0.0, 0.05) << "m";
 }
 
+TEST(ScanOdometry, ATurnInACabIsTheBetterTheLongerTheRobotStoodBefore) {
+  // Half a turn between near walls hangs on what is known of them before it: one scan, or several.
+  BoxScene cab;
+  cab.AddBox(-0.9, -1.0, 1.1, 0.9);
+  const auto error_deg = [&](int scans_at_rest) {
+    double squares = 0.0;
+    constexpr int kRuns = 30;
+    for (unsigned run = 0; run < kRuns; ++run) {
+      std::mt19937 random(run);
+      ScanOdometry odometry({});
+      Pose2 truth;
+      Pose2 path;
+      const auto observe = [&](const Pose2& motion) {
+        truth = truth * motion;
+        const UncertainPose2 wheels =
+            motion.theta == 0.0 ? UncertainPose2{} : Wheels(motion, 0.002, 0.5);
+        path = path * odometry.Observe(cab.Scan(truth, 361, 270.0, &random, 0.01), wheels).mean;
+      };
+      for (int i = 0; i < scans_at_rest; ++i) observe({});
+      for (int i = 0; i < 20; ++i) observe({0.0, 0.0, DegToRad(9.0)});
+      for (int i = 0; i < 10; ++i) observe({});
+      const double left = RadToDeg(WrapAngle(path.theta - truth.theta));
+      squares += left * left / kRuns;
+    }
+    return std::sqrt(squares);
+  };
+  const double after_one = error_deg(1);
+  const double after_many = error_deg(15);
+  EXPECT_LT(after_many, 0.75 * after_one);
+  EXPECT_LT(after_many, 0.08) << "deg";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -121,5 +121,35 @@ TEST(LocalMap, FarAndMeaninglessPointsAreLeftOut) {
   EXPECT_EQ(map.Align(points, {}, Eigen::Matrix3d::Identity()).inlier_share, 0.0);
 }
 
+TEST(LocalMap, TheTwoFacesOfAThinWallDoNotPullAtEachOther) {
+  // Two rooms with a wall of 12 cm between them, thinner than a window of cells; one is well known,
+  // of the other no more than a few scans. The rooms lie askew to the cells.
+  BoxScene rooms;
+  rooms.AddBox(0.0, 0.0, 10.0, 2.0);
+  rooms.AddBox(0.0, 2.12, 10.0, 5.0);
+  std::mt19937 random(31);
+  const Pose2 T_map_rooms{0.3, 0.7, DegToRad(33.0)};
+  LocalMap map({}, {3.0, 3.0});
+  const auto add = [&](const Pose2& pose) {
+    map.Add(*PointsInRobot(rooms.Scan(pose, 361, 270.0, &random)), T_map_rooms * pose);
+  };
+  for (int i = 0; i < 30; ++i) add({2.0 + 0.2 * i, 1.0, 0.0});
+  for (int i = 0; i < 4; ++i) add({4.0 + 0.15 * i, 3.3, DegToRad(90.0)});
+  double error_m = 0.0;
+  double error_deg = 0.0;
+  constexpr int kScans = 20;
+  for (int i = 0; i < kScans; ++i) {
+    const Pose2 truth{4.0 + 0.03 * i, 3.2, DegToRad(180.0 - 3.0 * i)};
+    const Pose2 guess = T_map_rooms * Pose2{truth.x + 0.03, truth.y - 0.05, truth.theta + 0.02};
+    const Alignment aligned = map.Align(*PointsInRobot(rooms.Scan(truth, 361, 270.0, &random)),
+                                        guess, Eigen::Matrix3d::Zero());
+    const Pose2 left = Between(T_map_rooms * truth, aligned.T_map_robot);
+    error_m += std::hypot(left.x, left.y) / kScans;
+    error_deg += RadToDeg(std::abs(left.theta)) / kScans;
+  }
+  EXPECT_LT(error_m, 0.005) << "m";
+  EXPECT_LT(error_deg, 0.08) << "deg";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -45,9 +45,11 @@ class ScanOdometry {
   UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
                          bool must_match = false);
 
-  /// The robot is somewhere else altogether: forget the local maps, go on from here. Points farther
-  /// than `reach_m` from the robot are not looked at from now on.
-  void Restart(double reach_m = std::numeric_limits<double>::infinity());
+  /// The robot is somewhere else altogether: forget the local maps, go on from here, and look as
+  /// far as there is to see.
+  void Restart();
+  /// Points farther than this from the robot are not looked at from now on; the local maps stay.
+  void SetReach(double reach_m) { reach_m_ = reach_m; }
 
   /// Sigma of the heading of the last observed scan against the local map by its points alone,
   /// radians; infinite if it was not matched.

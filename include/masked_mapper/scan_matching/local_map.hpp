@@ -4,8 +4,9 @@
 // A normal-distributions map whose windows overlap: every cell knows the mean and covariance of the
 // points in the cells around it, so a point finds its distribution in one look-up, and walls stay
 // lines across cell borders. Points on a wall pull along its normal alone: a blank corridor says
-// nothing about the way along it, and the covariance tells so. The paper takes motion as given;
-// this is ours.
+// nothing about the way along it, and the covariance tells so. What is seen from one side and from
+// the other is kept apart: a wall is thinner than a window, and a mixture of both faces would pull
+// a robot that passes a door and turns. The paper takes motion as given; this is ours.
 #pragma once
 
 #include <Eigen/Core>
@@ -71,14 +72,15 @@ class LocalMap {
   template <class Archive>
   void Serialize(Archive& archive) {
     // Most cells are empty: which cell a slot is of takes less room than the slot of every cell.
-    std::vector<std::int32_t> cell_of_slot(moments_.size());
+    std::vector<std::int32_t> cell_of_slot(moments_.size() / kSides);
     for (std::size_t cell = 0; cell < slot_of_cell_.size(); ++cell) {
       const std::int32_t slot = slot_of_cell_[cell];
       if (slot >= 0) cell_of_slot[static_cast<std::size_t>(slot)] = static_cast<std::int32_t>(cell);
     }
-    archive(corner_, cell_of_slot, moments_, distributions_, scans_);
+    archive(corner_, cell_of_slot, moments_, distributions_, scans_, front_rad_);
     if constexpr (Archive::kReads) {
-      if (moments_.size() != cell_of_slot.size() || distributions_.size() != cell_of_slot.size()) {
+      if (moments_.size() != kSides * cell_of_slot.size() ||
+          distributions_.size() != (kSides + 1) * cell_of_slot.size()) {
         archive.Refuse("a local map that does not hold together");
       }
       slot_of_cell_.assign(slot_of_cell_.size(), -1);
@@ -118,19 +120,26 @@ class LocalMap {
   Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
                   const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
   int Index(double x, double y) const;
+  std::size_t AddSlot(int index);
+  std::vector<std::uint8_t> SidesOf(const std::vector<Eigen::Vector2f>& normals,
+                                    double theta) const;
   void Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
               std::vector<int>& touched);
   void UpdateAround(std::vector<int> touched);
-  void UpdateDistribution(int column, int row);
-  double Step(const ScanPoints& points, const Pose2& T_map_robot, double sigma_m,
-              Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const;
+  void UpdateDistributions(int column, int row);
+  double Step(const ScanPoints& points, const std::vector<std::uint8_t>& sides,
+              const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+              Eigen::Vector3d& gradient) const;
+
+  static constexpr std::size_t kSides = 4;
 
   LocalMapOptions options_;
+  double front_rad_ = 0.0;                  ///< surfaces that face within 90 deg of it are in front
   Eigen::Vector2d corner_;                  ///< of cell (0, 0), in map
   int width_ = 0;                           ///< cells to a side
   std::vector<std::int32_t> slot_of_cell_;  ///< -1: nothing near
-  std::vector<Moments> moments_;
-  std::vector<Distribution> distributions_;
+  std::vector<Moments> moments_;            ///< of each slot the front, then the back
+  std::vector<Distribution> distributions_;  ///< alike
   std::size_t scans_ = 0;
 };
 
