@@ -196,7 +196,10 @@ void LocalMap::UpdateDistributions(int column, int row) {
     }
   }
   Moments& all = sums[kSides];
+  std::size_t only_side = kSides;
   for (std::size_t side = 0; side < kSides; ++side) {
+    if (sums[side].count == 0.0) continue;
+    only_side = all.count == 0.0 ? side : kSides;
     all.count += sums[side].count;
     all.x += sums[side].x;
     all.y += sums[side].y;
@@ -209,6 +212,10 @@ void LocalMap::UpdateDistributions(int column, int row) {
     const Moments& sum = sums[side];
     if (sum.count == 0.0) continue;
     Distribution& d = distributions_[(kSides + 1) * slot + side];
+    if (side == kSides && only_side < kSides) {
+      d = distributions_[(kSides + 1) * slot + only_side];
+      continue;
+    }
     const double mx = sum.x / sum.count;
     const double my = sum.y / sum.count;
     d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
@@ -220,9 +227,11 @@ void LocalMap::UpdateDistributions(int column, int row) {
     const double spread = std::hypot(0.5 * (xx - yy), xy);
     const double small = std::max(0.0, mean - spread);
     const double large = mean + spread;
-    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the larger variance
-    d.normal_x = static_cast<float>(-std::sin(angle));
-    d.normal_y = static_cast<float>(std::cos(angle));
+    // Cosine and sine of twice the direction of the larger variance, and of its half.
+    const double cosine = spread > 0.0 ? 0.5 * (xx - yy) / spread : 1.0;
+    d.normal_x =
+        static_cast<float>(-std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), xy));
+    d.normal_y = static_cast<float>(std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)));
     d.small = static_cast<float>(small);
     d.large = static_cast<float>(large);
     // Three points at the least, and spread over more than one cell: else a line is a guess.
