@@ -24,6 +24,7 @@ The map is in $out:
 $(cd "$out" && find . -type f -printf '  %P  %k KiB\n' | sort)
 
 How to look at it:
+  any browser on $out/report.html            all floors in 3D, closures, plots, options
   octovis $out/building.bt                   the building as an octree       (apt install octovis)
   pcl_viewer $out/building.pcd               its floors, told apart by colour (apt install pcl-tools)
   any picture viewer on $out/floors/*.pgm    the plan of each floor
