@@ -83,7 +83,7 @@ def why_off(row):
     return "nothing false and every revisit closed"
 
 
-def table1_text(rows, motion, masks, settings, verdicts):
+def table1_text(rows, motion, masks, settings, told, verdicts):
     by_key = {(row["mask"], row["motion"]): row for row in rows}
     ours = {mask: by_key[mask, motion] for mask in masks}
     own = [mask for mask in masks if mask not in PAPER_TABLE1 and mask != "never"]
@@ -99,7 +99,10 @@ def table1_text(rows, motion, masks, settings, verdicts):
         text += (f"Motion `{source}`" +
                  (", as in the paper: odometry alone" if source == "odometry" else
                   ", the default: wheels and scans fused where scans come often" if
-                  source == "auto" else "") + ":\n\n")
+                  source == "auto" else "") +
+                 (", told how good the robot's wheels are (" +
+                  listed(f"`{key}={value:g}`" for key, value in told[source].items()) + ")"
+                  if told.get(source) else "") + ":\n\n")
         lines = []
         for mask in masks:
             row = by_key[mask, source]
@@ -456,7 +459,7 @@ def main(snakemake):
     verdicts = Verdicts()
     writers = {
         "table1": lambda rows: table1_text(rows, params.motion, dict(params.masks),
-                                           params.settings, verdicts),
+                                           params.settings, params.told, verdicts),
         "fig2": fig2_text,
         "fig3": lambda rows: curve_text(3, rows, "MinScore", " / %", verdicts),
         "fig4": lambda rows: curve_text(4, rows, "MaxMaha", "", verdicts),
