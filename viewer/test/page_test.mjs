@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// node page_test.mjs CHROMIUM REPORT: opens a report from disk and uses it as a person would.
+// node page_test.mjs CHROMIUM REPORT EDITS: opens a report from disk and uses it as a person would. The
+// lines that it proposes for a validated closure and for a match that was not validated go to EDITS.
 import assert from 'node:assert/strict';
+import {writeFileSync} from 'node:fs';
 import {pathToFileURL} from 'node:url';
 import {chromium} from 'playwright-core';
 
-const [, , executablePath, report] = process.argv;
+const [, , executablePath, report, edits] = process.argv;
 const kPatience = 120000;  // ms; everything is drawn by the processor
 
 const browser = await chromium.launch({
@@ -88,9 +90,16 @@ try {
   await page.locator('#tab-map').focus();
   await page.keyboard.press('ArrowRight');
   assert.ok(await page.locator('#page-closures').isVisible());
-  await page.locator('.closures button').first().click();
-  assert.match(await page.locator('#selection code').textContent(),
-               /^- forbid_closure: \{from: [\d.]+, to: [\d.]+\}$/);
+  const proposed = async (state) => {
+    await page.locator('#closures-state').selectOption(state);
+    await page.locator('.closures button').first().click();
+    return page.locator('#selection code').textContent();
+  };
+  const addition = await proposed('hypothesis');
+  assert.match(addition, /^- add_closure: \{from: [\d.]+, to: [\d.]+, transform: \[[-\d., ]+\]\}$/);
+  const removal = await proposed('validated');
+  assert.match(removal, /^- forbid_closure: \{from: [\d.]+, to: [\d.]+\}$/);
+  writeFileSync(edits, `${addition}\n${removal}\n`);
   await page.keyboard.press('Escape');
   assert.ok(await page.locator('#selection').isHidden());
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Maps the log in data/ and looks at its report in headless Chromium.
+# Maps the log in data/, looks at its report in headless Chromium, and edits the map as it proposes.
 # usage: page_test.sh FOLDER PROGRAM      FOLDER: to work in; PROGRAM: masked_mapper
 set -euo pipefail
 viewer=$(realpath "$(dirname "$0")/..")
@@ -15,4 +15,9 @@ trap 'rm -rf "$map"' EXIT
 log="$map/<b>office & '\"<script>alert(1)<!--.log.gz"
 cp "$viewer/../data/office.log.gz" "$log"
 "$2" map "$log" -o "$map/out" --quiet
-node "$1/test/page_test.mjs" "$chromium" "$map/out/report.html"
+node "$1/test/page_test.mjs" "$chromium" "$map/out/report.html" "$map/edits.yaml"
+"$2" export "$map/out" --format all --edits "$map/edits.yaml" -o "$map/edited" --quiet
+validated() { grep -c ',validated,' "$1/closures.csv"; }
+[[ $(validated "$map/edited") -eq $(validated "$map/out") ]] ||
+  { echo "one closure in and one out leave $(validated "$map/edited")" >&2; exit 1; }
+! cmp -s "$map/out/closures.csv" "$map/edited/closures.csv"
