@@ -615,6 +615,13 @@ void CheckOptions(const Options& options) {
     throw InputError("log.min_range (" + NumberText(options.log.min_range) +
                      ") must be below log.max_range (" + NumberText(options.log.max_range) + ")");
   }
+  const LocalMapOptions& local_map = options.motion.scans.map;
+  constexpr double kMostCells = 5000.0;  // from the middle: the map then takes 400 MB
+  if (local_map.reach_m > kMostCells * local_map.cell_m) {
+    throw InputError("motion.scans.map.reach_m (" + NumberText(local_map.reach_m) +
+                     ") must not be above " + NumberText(kMostCells) +
+                     " times motion.scans.map.cell_m (" + NumberText(local_map.cell_m) + ")");
+  }
   const FloorSource source = options.floors.source;
   if (!options.floors.file.empty() && source != FloorSource::kAuto &&
       source != FloorSource::kLabels) {

@@ -76,7 +76,7 @@ Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const 
 // at the robot's pace. Wheels are overruled by a scan as a whole, not by a few points of it.
 Alignment ScanOdometry::AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
                                              const Eigen::Matrix3d& prior_information) const {
-  const Alignment aligned = AlignFromSeveralGuesses(points, T_map_guess, prior_information);
+  Alignment aligned = AlignFromSeveralGuesses(points, T_map_guess, prior_information);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> known(
       aligned.information.topLeftCorner<2, 2>());
   if (known.eigenvalues()(0) * options_.blank_ratio > known.eigenvalues()(1)) return aligned;

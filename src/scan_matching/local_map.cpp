@@ -177,8 +177,8 @@ void LocalMap::UpdateDistributions(int column, int row) {
           neighbour_row >= width_) {
         continue;
       }
-      const std::int32_t slot =
-          slot_of_cell_[static_cast<std::size_t>(neighbour_row * width_ + neighbour_column)];
+      const int neighbour = neighbour_row * width_ + neighbour_column;
+      const std::int32_t slot = slot_of_cell_[static_cast<std::size_t>(neighbour)];
       if (slot < 0) continue;
       const double ox = dx * options_.cell_m;
       const double oy = dy * options_.cell_m;

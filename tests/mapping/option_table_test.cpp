@@ -195,6 +195,14 @@ TEST(OptionTable, ContradictionsAreNamed) {
   }
 }
 
+TEST(OptionTable, ALocalMapThatFillsTheMemoryIsRefused) {
+  Options options;
+  options.motion.scans.map.cell_m = 0.01;
+  EXPECT_NO_THROW(CheckOptions(options));
+  options.motion.scans.map.reach_m = 1000.0;
+  EXPECT_THROW(CheckOptions(options), InputError);
+}
+
 TEST(OptionTable, AFileOfFloorsIsForLabelsOnly) {
   Options options;
   options.floors.file = "floors.csv";
