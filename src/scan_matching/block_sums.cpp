@@ -16,8 +16,8 @@ constexpr double kFarthest = 268435456.0;  // cells, 2^28: adding an offset cann
 static_assert(LookupTable::kPadding >= kSize, "blocks are read past the table's end");
 
 // Eight bytes or words at a time, in the compilers' own vectors: SSE2, NEON or plain code alike.
-typedef std::uint8_t Bytes __attribute__((vector_size(kSize)));
-typedef std::uint16_t Words __attribute__((vector_size(2 * kSize)));
+using Bytes __attribute__((vector_size(kSize))) = std::uint8_t;
+using Words __attribute__((vector_size(2 * kSize))) = std::uint16_t;
 
 // A block of offsets as vectors: one row of 8 in each, or two rows of 4.
 template <int kBlock>
@@ -141,7 +141,7 @@ void CellsAtPose(const LookupTable& table, const std::vector<Eigen::Vector2d>& p
 BlockSums::BlockSums(const LookupTable& table, const std::vector<Eigen::Vector2d>& points_in_query,
                      const SearchGrid& grid)
     : table_(table), grid_(grid), count_(points_in_query.size()) {
-  const auto angles = static_cast<std::size_t>(2 * grid.half_angle + 1);
+  const std::size_t angles = 2 * static_cast<std::size_t>(grid.half_angle) + 1;
   cells_x_.resize(angles * count_);
   cells_y_.resize(angles * count_);
   ranges_.resize(angles * static_cast<std::size_t>(table.levels()));
@@ -186,7 +186,8 @@ void BlockSums::Bin(std::int32_t angle, int level, Range* range) {
 
 BlockSums::Sums BlockSums::At(std::int32_t angle, int level, std::int32_t x, std::int32_t y,
                               int size) {
-  const auto slice = static_cast<std::size_t>(angle + grid_.half_angle);
+  const std::int32_t angle_index = angle + grid_.half_angle;
+  const auto slice = static_cast<std::size_t>(angle_index);
   const LookupTable::Level& cells = table_.level(level);
   if (level == 0) {
     const std::int32_t* cells_x = cells_x_.data() + slice * count_;
