@@ -30,9 +30,9 @@ ConvexSpace RectangleWithWindow(const Pose2& T_building_local, double x0, double
     space.corners.push_back(a);
     space.surfaces.emplace_back(Surface::kWall);
     if (e != edge) continue;
-    space.corners.push_back(a + from * (b - a));
+    space.corners.emplace_back(a + from * (b - a));
     space.surfaces.emplace_back(Surface::kGlass);
-    space.corners.push_back(a + to * (b - a));
+    space.corners.emplace_back(a + to * (b - a));
     space.surfaces.emplace_back(Surface::kWall);
   }
   return space;
@@ -51,9 +51,9 @@ void Glaze(ConvexSpace& space, std::size_t edge) {
   std::vector<std::optional<Surface>> surfaces;
   for (int pane = 0; pane < panes; ++pane) {
     const double start = pane * step;
-    if (pane > 0) corners.push_back(a + start / length * (b - a));
+    if (pane > 0) corners.emplace_back(a + start / length * (b - a));
     surfaces.emplace_back(Surface::kWall);
-    corners.push_back(a + (start + kMullion) / length * (b - a));
+    corners.emplace_back(a + (start + kMullion) / length * (b - a));
     surfaces.emplace_back(Surface::kGlass);
   }
   const auto at = static_cast<std::ptrdiff_t>(edge);
@@ -199,8 +199,8 @@ void FloorPlanner::JoinCorridors() {
         const double radius = 0.5 * std::max(a.style.width, b.style.width) / std::cos(kPi / kSides);
         for (int side = 0; side < kSides; ++side) {
           const double angle = a.T_building_corridor.theta + (2 * side + 1) * kPi / kSides;
-          knuckle.corners.push_back(centre +
-                                    radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+          knuckle.corners.emplace_back(centre +
+                                       radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
           knuckle.surfaces.emplace_back(Surface::kWall);
         }
       }
@@ -532,7 +532,9 @@ void FloorPlanner::FurnishCorridor(std::size_t corridor_index) {
 }
 
 void FloorPlanner::FurnishHalls() {
-  for (const auto& [hall, spacing] : halls_) {
+  for (const auto& entry : halls_) {
+    const ConvexSpace& hall = entry.first;
+    const double spacing = entry.second;
     Eigen::Vector2d low = hall.corners.front();
     Eigen::Vector2d high = low;
     for (const Eigen::Vector2d& corner : hall.corners) {
