@@ -16,6 +16,9 @@ checks=(
   octomap-tools
   python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs  # to write test bags
 )
+# Of the report page's tests; Node.js often comes from elsewhere, and then brings npm along.
+command -v npm >/dev/null || checks+=(nodejs npm)
+command -v chromium >/dev/null || checks+=(chromium)
 
 case "${1:-}" in
   "") packages+=("${checks[@]}") ;;
