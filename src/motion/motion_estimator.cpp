@@ -22,6 +22,7 @@ void MotionEstimator::Observe(const OdometryReading& reading) {
 }
 
 void MotionEstimator::RestartScans() {
+  in_transit_ = false;
   scan_odometry_.Restart();
   wheel_noise_.Restart();
 }
@@ -29,6 +30,7 @@ void MotionEstimator::RestartScans() {
 // What was seen of the cab on the way into it stays: a map begun anew is as good as its first scan,
 // and the robot may turn at once.
 void MotionEstimator::EnterTransit() {
+  in_transit_ = true;
   scan_odometry_.SetReach(options_.scans.transit_reach_m);
   wheel_noise_.Restart();
 }
@@ -54,13 +56,14 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
     }
     const Pose2 by_wheels = step.mean;
     // Scans stopped and the robot went on: what it sees now has little to do with the local map,
-    // and a match would only seem to be one. Without a gap it is the wheels that leapt.
+    // and a match would only seem to be one. Without a gap it is the wheels that leapt. A robot
+    // that rides goes on without a step.
     constexpr double kGap = 5.0;  // s
-    if (has_wheels && elapsed > kGap &&
-        (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
-         std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg))) {
-      RestartScans();
-    }
+    const bool went_on =
+        in_transit_ ||
+        (has_wheels && (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
+                        std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg)));
+    if (elapsed > kGap && went_on) RestartScans();
     step = scan_odometry_.Observe(scan, step, must_match);
     if (has_wheels) LearnWheelNoise(by_wheels, step.mean);
   }

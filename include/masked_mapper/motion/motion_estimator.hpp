@@ -61,7 +61,7 @@ class MotionEstimator {
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
-            last_step_s_, T_odom_robot_, T_node_robot_);
+            last_step_s_, in_transit_, T_odom_robot_, T_node_robot_);
   }
 
  private:
@@ -76,6 +76,7 @@ class MotionEstimator {
   std::optional<double> last_scan_stamp_;
   UncertainPose2 last_step_;
   double last_step_s_ = 0.0;
+  bool in_transit_ = false;  ///< since the scene was last begun anew
   Pose2 T_odom_robot_;
   UncertainPose2 T_node_robot_;
 };
