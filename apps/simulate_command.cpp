@@ -23,6 +23,7 @@ struct SimulateArguments {
   std::string building;
   std::string log;
   std::uint64_t seed = 1;
+  std::uint64_t tour = 1;
   double length_m = 0.0;
   std::vector<std::string> visits;
   bool perfect = false;
@@ -64,6 +65,7 @@ int RunSimulate(const SimulateArguments& arguments) {
   const Building building = LoadBuilding(arguments.building, arguments.seed);
   SimulationOptions options;
   options.seed = arguments.seed;
+  options.tour = arguments.tour;
   options.length = arguments.length_m;
   options.visits = FloorsCalled(building, arguments.visits);
   options.floor_labels = arguments.floor_labels;
@@ -83,6 +85,9 @@ int RunSimulate(const SimulateArguments& arguments) {
                 paths.log.c_str(), static_cast<unsigned long long>(summary.scans), summary.length,
                 summary.seconds, static_cast<unsigned long long>(summary.floor_changes),
                 paths.truth.c_str(), paths.truth_floors.c_str());
+    const Pose2& start = summary.T_building_world;
+    std::printf("start: floor %s, at %.6f m, %.6f m, %.9f rad of the building\n",
+                summary.start_floor.c_str(), start.x, start.y, start.theta);
   }
   return 0;
 }
@@ -109,6 +114,11 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
       ->capture_default_str()
       ->type_name("N");
   command
+      ->add_option("--tour", arguments->tour,
+                   "another drive through the same building: other start, way and noise")
+      ->capture_default_str()
+      ->type_name("N");
+  command
       ->add_option("--length", arguments->length_m,
                    "go on until the tour is this long, m; 0: every corridor once")
       ->check(CLI::Range(0.0, 1e6))
@@ -128,6 +138,7 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
       "Examples:\n"
       "  masked_mapper simulate --building office -o office.log.gz\n"
       "  masked_mapper simulate --building campus -o campus.log.gz --seed 7 --length 5000\n"
+      "  masked_mapper simulate --building campus -o again.log.gz --seed 7 --tour 2\n"
       "\n"
       "Beside LOG (without its .gz) stand LOG.truth.tum, the true pose at every scan, and\n"
       "LOG.truth_floors.csv, the true floor.");

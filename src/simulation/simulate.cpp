@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/simulation/random_generator.hpp"
 #include "masked_mapper/simulation/tour.hpp"
 
 namespace masked_mapper {
@@ -53,8 +54,14 @@ SimulationNoise SimulationNoise::None() {
           AccelerationNoise::None()};
 }
 
-SimulationSummary Simulate(const Building& building, const SimulationOptions& options,
+SimulationSummary Simulate(const Building& given, const SimulationOptions& given_options,
                            const SimulationNoise& noise, const SimulationSink& sink) {
+  Building building = given;
+  SimulationOptions options = given_options;
+  if (options.tour != 1) {
+    building.usual_tour = OtherTour(building, options.seed, options.tour, options.visits);
+    options.seed = RandomGenerator(options.seed, "tour " + std::to_string(options.tour)).Next();
+  }
   CheckRate(options.odometry_rate, "odometry");
   CheckRate(options.pressure.rate, "barometer");
   CheckRate(options.acceleration.rate, "accelerometer");
@@ -91,6 +98,8 @@ SimulationSummary Simulate(const Building& building, const SimulationOptions& op
   summary.seconds = drive.Duration();
   summary.length = drive.Length();
   summary.floor_changes = tour.transits.size();
+  summary.T_building_world = T_building_world;
+  summary.start_floor = building.floors[start.floor].label;
 
   while (true) {
     const double time = std::min({scan_ticks.Next(), odometry_ticks.Next(), pressure_ticks.Next(),

@@ -97,7 +97,8 @@ SimulationSummary SimulateToFiles(const Building& building, const SimulationOpti
   TextFile floors(pending_floors.pending());
 
   log.WriteComment("simulated building " + building.name + ", seed " +
-                   std::to_string(options.seed));
+                   std::to_string(options.seed) +
+                   (options.tour == 1 ? "" : ", tour " + std::to_string(options.tour)));
   floors.Text("t,label\n");
   SimulationSink sink;
   sink.observation = [&](const Observation& observation) { log.Write(observation); };

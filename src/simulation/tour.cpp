@@ -541,6 +541,39 @@ Tour PlanTour(const Building& building, const TourOptions& options) {
   return TourBuilder(building, options).Build();
 }
 
+UsualTour OtherTour(const Building& building, std::uint64_t seed, std::uint64_t tour,
+                    const std::vector<std::size_t>& visits) {
+  UsualTour other = building.usual_tour;
+  if (tour == 1) return other;
+  RandomGenerator random(seed, "start of tour " + std::to_string(tour));
+  const std::size_t floors = building.floors.size();
+  if (!visits.empty()) {
+    if (visits.front() >= floors) return other;  // which PlanTour says
+    other.start_floor = visits.front();
+  } else if (floors > 1) {
+    other.start_floor = (other.start_floor + 1 + random.Below(floors - 1)) % floors;
+  }
+  // On a corridor: somewhere that the usual tour can reach, too.
+  std::vector<std::size_t> able;
+  for (const Passage& passage : building.floors.at(other.start_floor).passages) {
+    if (passage.must_visit) able.push_back(passage.from);
+  }
+  if (able.empty()) return building.usual_tour;
+  other.start_way_point = able[random.Below(able.size())];
+  other.visits = {other.start_floor};
+  std::vector<std::size_t> rest;
+  for (std::size_t f = 0; f < floors; ++f) {
+    if (f != other.start_floor) rest.push_back(f);
+  }
+  while (!rest.empty()) {
+    const auto next = rest.begin() + static_cast<std::ptrdiff_t>(random.Below(rest.size()));
+    other.visits.push_back(*next);
+    rest.erase(next);
+  }
+  if (floors > 1) other.visits.push_back(other.start_floor);
+  return other;
+}
+
 double TourLength(const Building& building, const Tour& tour) {
   double length = 0.0;
   for (const TourLeg& leg : tour.legs) {

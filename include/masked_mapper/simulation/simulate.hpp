@@ -21,6 +21,9 @@ namespace masked_mapper {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
+  /// Which drive through the building of `seed`: another start, order, noise and people. Tour 1 is
+  /// the building's usual one.
+  std::uint64_t tour = 1;
   double length = 0.0;              ///< m; the tour goes on until it is at least this long
   std::vector<std::size_t> visits;  ///< floors in order of visiting; empty: as is usual there
   DriveOptions drive;               ///< its seed is set from `seed`
@@ -62,6 +65,8 @@ struct SimulationSummary {
   double length = 0.0;   ///< m driven
   std::uint64_t scans = 0;
   std::uint64_t floor_changes = 0;
+  Pose2 T_building_world;   ///< where the drive began, in the building's plan
+  std::string start_floor;  ///< label
 };
 
 /// Throws InputError when the building cannot be driven or an option is out of range.

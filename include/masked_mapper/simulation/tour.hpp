@@ -38,6 +38,12 @@ struct Tour {
 /// Throws InputError when `visits` names a floor that is not there.
 Tour PlanTour(const Building& building, const TourOptions& options);
 
+/// Where another drive through the same building starts, and in which order it visits the floors:
+/// tour 1 is the building's usual one; any other starts elsewhere, on another floor when there is
+/// one, or on the first of `visits`. Drawn from `seed` and `tour`.
+UsualTour OtherTour(const Building& building, std::uint64_t seed, std::uint64_t tour,
+                    const std::vector<std::size_t>& visits);
+
 /// Metres along the passages of all legs; transits are not counted.
 double TourLength(const Building& building, const Tour& tour);
 
