@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // masked_mapper evaluate OUT [--relations FILE] [--truth FILE] [--checked OUT...] [--json]
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -29,6 +30,7 @@ struct EvaluateArguments {
   std::string relations;
   std::string truth;
   std::vector<std::string> checked;
+  std::size_t drive = 0;  ///< of a map of several logs, from 1; 0: all of it
   bool json = false;
   bool quiet = false;
 };
@@ -65,8 +67,25 @@ std::optional<PathLengthError> ErrorAgainstChecked(const EvaluateArguments& argu
   return CompareWithCheckedMaps(GraphOf(result, arguments.folder), checked, pairs);
 }
 
+/// A truth of one drive says nothing of the others, whose stamps may be shifted besides.
+void RequireTruthOfAll(const EvaluateArguments& arguments, const ResultFolder& result,
+                       const Truth& truth) {
+  if (result.drives.size() < 2 || truth.poses.empty()) return;
+  const double first = truth.poses.front().stamp;
+  const double last = truth.poses.back().stamp;
+  const auto covered = static_cast<std::size_t>(std::count_if(
+      result.trajectory.begin(), result.trajectory.end(),
+      [&](const StampedPose& pose) { return pose.stamp >= first && pose.stamp <= last; }));
+  constexpr std::size_t kMostLeftOut = 10;  // percent
+  if (100 * (result.trajectory.size() - covered) <= kMostLeftOut * result.trajectory.size()) return;
+  throw InputError(arguments.folder + " holds " + std::to_string(result.drives.size()) +
+                   " drives, and " + arguments.truth +
+                   " is not the truth of all: say of which with --drive N");
+}
+
 Evaluation Evaluate(const EvaluateArguments& arguments) {
-  const ResultFolder result = ReadResultFolder(arguments.folder);
+  ResultFolder result = ReadResultFolder(arguments.folder);
+  if (arguments.drive > 0) result = OneDrive(arguments.folder, result, arguments.drive);
   Evaluation evaluation;
   if (!arguments.relations.empty()) {
     evaluation.relations =
@@ -79,6 +98,7 @@ Evaluation Evaluate(const EvaluateArguments& arguments) {
   }
   if (arguments.truth.empty()) return evaluation;
   const Truth truth = ReadTruth(arguments.truth);
+  RequireTruthOfAll(arguments, result, truth);
   evaluation.trajectory = CompareWithTruth(result.trajectory, truth, result.floors);
   evaluation.floors = CompareFloors(result.trajectory, result.floors, truth.floors);
   if (!result.graph) return evaluation;
@@ -302,6 +322,12 @@ void AddEvaluateCommand(CLI::App& program, Run& run) {
           "maps of the same log without false closures: the shortest of their ways are the "
           "true lengths that path lengths are held against")
       ->type_name("OUT...");
+  command
+      ->add_option("--drive", arguments->drive,
+                   "of a map of several logs: this drive alone, with the stamps of its own log;\n"
+                   "from 1, in the order of summary.json")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N");
   command->add_flag("--json", arguments->json, "as JSON, for programs");
   command->add_flag("--quiet", arguments->quiet, "print errors and the result only");
   command->footer(
@@ -310,6 +336,7 @@ void AddEvaluateCommand(CLI::App& program, Run& run) {
       "Examples:\n"
       "  masked_mapper evaluate out --relations aces.relations\n"
       "  masked_mapper evaluate out --truth campus.log.truth.tum --json\n"
+      "  masked_mapper evaluate out --drive 2 --truth tuesday.log.truth.tum\n"
       "  masked_mapper evaluate out --checked out other-mask");
   command->callback([arguments, &run] { run = [arguments] { return RunEvaluate(*arguments); }; });
 }

@@ -20,6 +20,7 @@
 #include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
+#include "run_description.hpp"
 #include "saved_map_path.hpp"
 
 namespace masked_mapper {
@@ -100,8 +101,7 @@ int ExportAll(const ExportArguments& arguments) {
   const SavedMap map = ReadMap(arguments);
   OutputFolder folder(arguments.file, existing);
   WriteMapFile(map.origin, map.result, folder.path() / "building.mmap");
-  WriteMap(map.result, {map.origin.log, map.origin.mask, OptionValues(map.origin.options)},
-           OptionsOf(map), folder.path());
+  WriteMap(map.result, DescriptionOf(map.origin, map.result), OptionsOf(map), folder.path());
   folder.Commit();
   if (!arguments.quiet) std::cout << "all: " << arguments.file << "\n";
   return 0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -15,10 +16,12 @@
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/configuration.hpp"
+#include "masked_mapper/mapping/drive_joining.hpp"
 #include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
@@ -26,6 +29,8 @@
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "option_flags.hpp"
 #include "progress_bar.hpp"
+#include "run_description.hpp"
+#include "saved_map_path.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -36,7 +41,8 @@ struct MapArguments {
   std::string mask = "openings";
   OptionFlags options;
   std::string edits;
-  std::string floors;
+  std::vector<std::string> floors;
+  std::string onto;
   std::string threads;
   double checkpoint_s = 1.0;
   bool resume = false;
@@ -62,11 +68,78 @@ bool IsFinished(const MapArguments& arguments, const MapOrigin& origin) {
                    "; --force replaces it");
 }
 
+/// One log as it is asked for among several.
+MapOrigin OriginOfDrive(const MapOrigin& origin, std::size_t drive) {
+  MapOrigin own = origin;
+  if (drive == 0) return own;
+  own.log = origin.later_logs[drive - 1].log;
+  own.options.floors.file = origin.later_logs[drive - 1].floors;
+  return own;
+}
+
+/// What is kept on disk of a map in the making.
+struct Keeping {
+  FinishedDrives finished;
+  std::unique_ptr<CheckpointFile> checkpoints;  ///< of the drive at work
+  std::size_t drives = 1;
+  std::size_t drive = 0;  ///< at work
+
+  bool HasAnything() const {
+    return finished.count() > 0 || (checkpoints && checkpoints->HasCheckpoint());
+  }
+  /// To be gone on from, in percent of all logs.
+  int Percent() const {
+    const double part = checkpoints && checkpoints->HasCheckpoint() ? checkpoints->progress() : 0.0;
+    const double done = static_cast<double>(drive) + part;
+    return static_cast<int>(100.0 * done / static_cast<double>(drives));
+  }
+};
+
+/// Maps every log by itself and joins them, to OLD first of all.
+MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keeping& keeping,
+                      ProgressBar& progress) {
+  std::vector<MappingResult> maps;
+  if (!origin.onto.empty()) {
+    progress.Stage("reading " + origin.onto);
+    maps.push_back(ReadMapFile(MapFileOf(origin.onto)).result);
+    if (maps.back().trajectory.empty() || maps.back().drives.empty()) {
+      throw InputError(origin.onto + ": a map without a scan cannot be grown");
+    }
+  }
+  for (keeping.drive = 0; keeping.drive < keeping.drives; ++keeping.drive) {
+    const bool is_alone = keeping.drives == 1 && maps.empty();
+    if (!is_alone) {
+      std::optional<MappingResult> done = keeping.finished.Load(keeping.drive);
+      if (done) {
+        maps.push_back(std::move(*done));
+        continue;
+      }
+    }
+    const MapOrigin own = OriginOfDrive(origin, keeping.drive);
+    keeping.checkpoints = std::make_unique<CheckpointFile>(
+        arguments.out, origin, arguments.checkpoint_s, arguments.resume, keeping.drive);
+    maps.push_back(MapLog(own.log, own.mask, own.options, progress, keeping.checkpoints.get()));
+    const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
+                                  keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
+    if (is_alone || !is_worth_keeping || arguments.checkpoint_s == 0.0) continue;
+    keeping.checkpoints.reset();
+    keeping.finished.Save(keeping.drive, maps.back());
+  }
+  const std::size_t said = [&] {
+    std::size_t count = 0;
+    for (const MappingResult& map : maps) count += map.warnings.size();
+    return count;
+  }();
+  MappingResult result = JoinDrives(std::move(maps), origin.options, progress);
+  for (std::size_t i = said; i < result.warnings.size(); ++i) progress.Warn(result.warnings[i]);
+  return result;
+}
+
 /// Maps and writes all of OUT.
 Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, ExistingFolder existing,
-                CheckpointFile& checkpoints, ProgressBar& progress) {
+                Keeping& keeping, ProgressBar& progress) {
   const Options& options = origin.options;
-  MappingResult result = MapLog(origin.log, origin.mask, options, progress, &checkpoints);
+  MappingResult result = MapLogs(arguments, origin, keeping, progress);
   if (!arguments.edits.empty()) ApplyEdits(arguments.edits, options, result);
   progress.Stage("writing");
   OutputFolder folder(arguments.out, existing);
@@ -79,8 +152,7 @@ Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, Existing
   result.seconds.total += map_file_seconds;
   ExportOptions export_options{options.grid, options.octree};
   export_options.grid.threads = options.threads;
-  Summary summary = WriteMap(result, {origin.log, origin.mask, OptionValues(options)},
-                             export_options, folder.path());
+  Summary summary = WriteMap(result, DescriptionOf(origin, result), export_options, folder.path());
   ThrowIfInterrupted();
   folder.Commit();
   progress.Finish();
@@ -88,35 +160,58 @@ Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, Existing
 }
 
 /// What to add to the word of a run that ended early.
-std::string HowToGoOn(const CheckpointFile& checkpoints) {
-  const auto percent = static_cast<int>(100.0 * checkpoints.progress());
-  return "; " + std::to_string(percent) +
-         " % of the log is kept: the same command with --resume goes on";
+std::string HowToGoOn(const Keeping& keeping) {
+  return "; " + std::to_string(keeping.Percent()) + " % of the " +
+         (keeping.drives > 1 ? "logs" : "log") + " is kept: the same command with --resume goes on";
+}
+
+MapOrigin OriginOf(const MapArguments& arguments, Options options) {
+  const std::size_t given = arguments.floors.size();
+  const bool is_given_to_all = given == arguments.logs.size();
+  if (given > 0 && !is_given_to_all) {
+    throw InputError("--floors is given " + std::to_string(given) + " times for " +
+                     std::to_string(arguments.logs.size()) +
+                     " logs: once for each, in their order, `-` for none");
+  }
+  const auto floors_of = [&](std::size_t log) {
+    if (given == 0) return options.floors.file;
+    return arguments.floors[log] == "-" ? std::string() : arguments.floors[log];
+  };
+  MapOrigin origin;
+  origin.log = arguments.logs.front();
+  origin.mask = arguments.mask;
+  for (std::size_t i = 1; i < arguments.logs.size(); ++i) {
+    origin.later_logs.push_back({arguments.logs[i], floors_of(i)});
+  }
+  origin.onto = arguments.onto;
+  options.floors.file = floors_of(0);
+  origin.options = std::move(options);
+  CheckOptions(origin.options);
+  return origin;
 }
 
 int RunMap(const MapArguments& arguments) {
   Options options = ReadOptions(arguments.options);
   if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
-  if (!arguments.floors.empty()) options.floors.file = arguments.floors;
   CheckOptions(options);
   if (options.threads == 0) {
     options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
   MakeMask(arguments.mask, options.masks);  // throws before the log is looked at
-  if (arguments.logs.size() > 1) {
-    throw InputError("map takes one log, not " + std::to_string(arguments.logs.size()) +
-                     "; several cannot be joined yet");
-  }
   // Before the work: an hour of mapping must not end in "exists already".
   const ExistingFolder existing = HowToTreat(arguments);
-  const MapOrigin origin{arguments.logs.front(), arguments.mask, options};
-  CheckpointFile checkpoints(arguments.out, origin, arguments.checkpoint_s, arguments.resume);
+  const MapOrigin origin = OriginOf(arguments, options);
+  // The same of a later log or a map that is not there.
+  for (const MapOrigin::LaterLog& later : origin.later_logs) OpenLog(later.log, options.log);
+  if (!origin.onto.empty()) MapFileOf(origin.onto);
+  Keeping keeping{FinishedDrives(arguments.out, origin, arguments.resume), nullptr,
+                  arguments.logs.size()};
   if (arguments.resume && IsFinished(arguments, origin)) {
     if (!arguments.edits.empty()) {
       throw InputError(arguments.out + " is finished already: `export " + arguments.out +
                        " --format all --edits " + arguments.edits + " -o NEW` edits it");
     }
-    checkpoints.Remove();  // the program may have ended between the two
+    keeping.finished.Remove();  // the program may have ended between the two
     if (!arguments.quiet) std::cout << "map: " << arguments.out << " is finished already\n";
     return 0;
   }
@@ -127,22 +222,25 @@ int RunMap(const MapArguments& arguments) {
                      " is there: --resume goes on with it, --force starts afresh");
   }
 
+  // What an earlier run of several logs left must not be taken for this one's.
+  if (!arguments.resume && keeping.drives > 1) keeping.finished.Remove();
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
   Summary summary;
   try {
-    summary = MakeMap(arguments, origin, existing, checkpoints, progress);
+    summary = MakeMap(arguments, origin, existing, keeping, progress);
   } catch (const InputError& error) {
-    if (!checkpoints.HasCheckpoint()) throw;
-    throw InputError(error.what() + HowToGoOn(checkpoints));
+    if (!keeping.HasAnything()) throw;
+    throw InputError(error.what() + HowToGoOn(keeping));
   } catch (const Interrupted&) {
-    if (!checkpoints.HasCheckpoint()) throw;
-    throw Interrupted("interrupted" + HowToGoOn(checkpoints));
+    if (!keeping.HasAnything()) throw;
+    throw Interrupted("interrupted" + HowToGoOn(keeping));
   } catch (const std::runtime_error& error) {
-    if (!checkpoints.HasCheckpoint()) throw;
-    throw std::runtime_error(error.what() + HowToGoOn(checkpoints));
+    if (!keeping.HasAnything()) throw;
+    throw std::runtime_error(error.what() + HowToGoOn(keeping));
   }
-  checkpoints.Remove();
+  keeping.checkpoints.reset();
+  keeping.finished.Remove();
   if (!arguments.quiet) std::cout << ClosingTable(summary) << "map: " << arguments.out << "\n";
   return 0;
 }
@@ -165,8 +263,11 @@ std::string MaskHelp() {
 void AddMapCommand(CLI::App& program, Run& run) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = program.add_subcommand(
-      "map", "Map a log: CARMEN text (.clf, .log), plain or .gz, with 2D lidar and odometry");
-  command->add_option("LOG", arguments->logs, "the robot's log")->required();
+      "map", "Map logs: CARMEN text (.clf, .log), plain or .gz, with 2D lidar and odometry");
+  command
+      ->add_option("LOG", arguments->logs,
+                   "the robot's log; several drives of one building are joined")
+      ->required();
   command->add_option("-o,--output", arguments->out, "folder to write the map to")
       ->required()
       ->type_name("OUT");
@@ -177,8 +278,14 @@ void AddMapCommand(CLI::App& program, Run& run) {
   command
       ->add_option("--floors", arguments->floors,
                    "file of lines `t,label`: from t (s) on the robot is on that floor, `-`: in\n"
-                   "transit; stands for the log's own FLOOR lines")
+                   "transit; stands for the log's own FLOOR lines. Of several logs: once for\n"
+                   "each, in their order, `-` for none")
+      ->allow_extra_args(false)
       ->type_name("FILE");
+  command
+      ->add_option("--onto", arguments->onto,
+                   "grow this map: what `map` wrote, or the building.mmap in it; OUT is another")
+      ->type_name("OLD");
   command
       ->add_option("--threads", arguments->threads,
                    "threads to use, 0: all; the map is the same with any number")
@@ -206,13 +313,18 @@ void AddMapCommand(CLI::App& program, Run& run) {
       "  masked_mapper map drive.log.gz -o out --force --mask 'any(openings,eccentricity)'\n"
       "  masked_mapper map drive.log.gz -o out --set matcher.min_score=0.5 --set log.max_range=30\n"
       "  masked_mapper map drive.bag -o out --floors floors.csv\n"
+      "  masked_mapper map monday.log.gz tuesday.log.gz -o out\n"
+      "  masked_mapper map wednesday.log.gz --onto out -o grown\n"
       "\n"
       "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
       "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv, summary.json,\n"
       "and report.html to look at all of it in a browser. Nothing is written before all of it is,\n"
       "and an OUT that exists is never replaced without --force. Until then, what is done is kept\n"
       "in a hidden folder beside OUT (.OUT.unfinished): whatever ends the run, the same command\n"
-      "with --resume goes on.");
+      "with --resume goes on.\n\n"
+      "Several logs: each is mapped by itself, from an unknown start, and tied to the others by\n"
+      "validated closures alone. A drive that nothing ties stays a piece of its own beside them,\n"
+      "with floors called <label>.drive<n>; summary.json (`drives`) and a warning say so.");
   command->callback([arguments, &run] { run = [arguments] { return RunMap(*arguments); }; });
 }
 

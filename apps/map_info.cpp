@@ -14,6 +14,7 @@
 #include "masked_mapper/export/number_text.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
+#include "run_description.hpp"
 #include "saved_map_path.hpp"
 
 namespace masked_mapper {
@@ -53,9 +54,8 @@ MapFacts FactsOf(const std::string& out_or_map) {
   const SavedMap map = ReadMapFile(facts.file);
   facts.bytes = std::filesystem::file_size(facts.file);
   const MappingResult& result = map.result;
-  facts.summary =
-      Summarise(result, {map.origin.log, map.origin.mask, OptionValues(map.origin.options)},
-                RenderFloors(result, map.origin.options.grid));
+  facts.summary = Summarise(result, DescriptionOf(map.origin, result),
+                            RenderFloors(result, map.origin.options.grid));
   const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   if (!trajectory.empty()) facts.duration_s = trajectory.back().stamp - trajectory.front().stamp;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
@@ -108,6 +108,14 @@ void PrintText(const MapFacts& facts) {
                                      std::to_string(floor.nodes) + " nodes, " +
                                      FixedText(floor.area_m2, 1) + " m2 known");
   }
+  for (std::size_t i = 0; i < summary.drives.size(); ++i) {
+    const DriveFacts& drive = summary.drives[i];
+    line("drive " + std::to_string(i + 1),
+         drive.log + ": " + std::to_string(drive.scans) + " scans, " +
+             (drive.joined ? "" : "a piece of its own, ") +
+             std::to_string(drive.closures_to_others) + " closures to other drives" +
+             (drive.reason.empty() ? "" : "; " + drive.reason));
+  }
   for (const auto& [key, value] : facts.changed) line("option", key + " = " + value);
   line("file", FixedText(static_cast<double>(facts.bytes) / (1 << 20), 1) + " MiB");
   for (const std::string& warning : summary.warnings) line("warning", warning);
@@ -129,28 +137,31 @@ void PrintJson(const MapFacts& facts) {
   for (const auto& [state, count] : facts.states) states[state] = count;
   Json changed = Json::object();
   for (const auto& [key, value] : facts.changed) changed[key] = value;
-  const Json json = {{"map", facts.file.string()},
-                     {"bytes", facts.bytes},
-                     {"log", summary.run.log},
-                     {"mask", summary.run.mask},
-                     {"motion_source", summary.motion_source},
-                     {"duration_s", facts.duration_s},
-                     {"path_length_m", facts.path_length_m},
-                     {"counts",
-                      {{"observations", summary.counts.observations},
-                       {"scans", summary.counts.scans},
-                       {"kept_scans", facts.kept_scans},
-                       {"nodes", summary.counts.nodes},
-                       {"scan_nodes", summary.counts.scan_nodes},
-                       {"odometry_nodes", summary.counts.odometry_nodes},
-                       {"attempted", summary.counts.attempted},
-                       {"matched", summary.counts.matched},
-                       {"validated", summary.counts.validated}}},
-                     {"edges", edges},
-                     {"closures", states},
-                     {"floors", floors},
-                     {"changed_options", changed},
-                     {"warnings", summary.warnings}};
+  Json json = {{"map", facts.file.string()},
+               {"bytes", facts.bytes},
+               {"log", summary.run.log},
+               {"mask", summary.run.mask},
+               {"motion_source", summary.motion_source},
+               {"duration_s", facts.duration_s},
+               {"path_length_m", facts.path_length_m},
+               {"counts",
+                {{"observations", summary.counts.observations},
+                 {"scans", summary.counts.scans},
+                 {"kept_scans", facts.kept_scans},
+                 {"nodes", summary.counts.nodes},
+                 {"scan_nodes", summary.counts.scan_nodes},
+                 {"odometry_nodes", summary.counts.odometry_nodes},
+                 {"attempted", summary.counts.attempted},
+                 {"matched", summary.counts.matched},
+                 {"validated", summary.counts.validated}}},
+               {"edges", edges},
+               {"closures", states},
+               {"floors", floors},
+               {"changed_options", changed},
+               {"warnings", summary.warnings}};
+  if (!summary.drives.empty()) {
+    json["drives"] = Json::parse(SummaryText(summary), nullptr, false).at("drives");
+  }
   // A path may hold bytes that are no UTF-8.
   std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }

@@ -31,10 +31,20 @@ void SetStep(Walkable& walkable, std::size_t from, double length) {
   walkable.graph.AddEdge(from, from + 1, length);
 }
 
+/// Of every node, whether an edge leads to the next: none does from one drive to another.
+std::vector<bool> LeadsOn(const MappedGraph& graph) {
+  std::vector<bool> leads_on(graph.nodes.size(), false);
+  for (const GraphEdge& edge : graph.edges) {
+    if (IsStep(edge)) leads_on[std::min(edge.from, edge.to)] = true;
+  }
+  return leads_on;
+}
+
 Walkable AsMapped(const MappedGraph& graph) {
   Walkable walkable(graph.nodes.size());
+  const std::vector<bool> leads_on = LeadsOn(graph);
   for (std::size_t i = 0; i + 1 < graph.nodes.size(); ++i) {
-    SetStep(walkable, i, LengthIn(graph.nodes, i, i + 1));
+    if (leads_on[i]) SetStep(walkable, i, LengthIn(graph.nodes, i, i + 1));
   }
   for (const GraphEdge& edge : graph.edges) {
     if (!IsStep(edge)) {
@@ -51,7 +61,9 @@ Walkable AsItIs(const MappedGraph& graph, const std::vector<std::optional<Stampe
     return Distance(truth[a]->T_world_robot, truth[b]->T_world_robot);
   };
   Walkable walkable(graph.nodes.size());
+  const std::vector<bool> leads_on = LeadsOn(graph);
   for (std::size_t i = 0; i + 1 < graph.nodes.size(); ++i) {
+    if (!leads_on[i]) continue;
     SetStep(walkable, i, true_length(i, i + 1).value_or(LengthIn(graph.nodes, i, i + 1)));
   }
   for (const GraphEdge& edge : graph.edges) {
@@ -101,9 +113,15 @@ double ShortestWay(const Walkable& walkable, const Place& from, const Place& to)
 /// The error of ways of lengths `mapped` whose true lengths are `real`.
 PathLengthError ErrorOf(const std::vector<double>& mapped, const std::vector<double>& real) {
   PathLengthError error;
-  const double count = static_cast<double>(mapped.size());
+  // Between drives that nothing ties there is no way.
+  const auto is_known = [&](std::size_t i) {
+    return std::isfinite(mapped[i]) && std::isfinite(real[i]);
+  };
+  double count = 0.0;
+  for (std::size_t i = 0; i < mapped.size(); ++i) count += is_known(i) ? 1.0 : 0.0;
   std::vector<double> magnitudes;
   for (std::size_t i = 0; i < mapped.size(); ++i) {
+    if (!is_known(i)) continue;
     const double too_long = mapped[i] - real[i];
     magnitudes.push_back(std::abs(too_long));
     error.missing_m += std::max(too_long, 0.0) / count;

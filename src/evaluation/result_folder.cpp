@@ -129,7 +129,8 @@ std::vector<ValidatedClosure> ReadClosures(const std::string& path,
   return closures;
 }
 
-std::vector<MappedFloor> ReadFloors(const std::string& path) {
+// Floors and drives of summary.json.
+void ReadSummary(const std::string& path, ResultFolder& result) {
   std::string text;
   ForEachLine(path, [&text](std::string_view line, const FileLine&) {
     text.append(line);
@@ -140,15 +141,36 @@ std::vector<MappedFloor> ReadFloors(const std::string& path) {
   if (json.is_discarded() || !json.is_object()) fail("is no JSON object");
   const auto list = json.find("floors");
   if (list == json.end() || !list->is_array()) fail("has no list `floors`");
-  std::vector<MappedFloor> floors;
   for (const auto& entry : *list) {
     if (!entry.is_object() || !entry.contains("label") || !entry["label"].is_string() ||
         !entry.contains("elevation_m") || !entry["elevation_m"].is_number()) {
       fail("an entry of `floors` lacks `label` or `elevation_m`");
     }
-    floors.push_back({entry["label"].get<std::string>(), entry["elevation_m"].get<double>()});
+    result.floors.push_back(
+        {entry["label"].get<std::string>(), entry["elevation_m"].get<double>()});
   }
-  return floors;
+  const auto drives = json.find("drives");
+  if (drives == json.end()) return;
+  if (!drives->is_array()) fail("`drives` is no list");
+  for (const auto& entry : *drives) {
+    const auto is_count = [&](const char* key) {
+      return entry.is_object() && entry.contains(key) && entry[key].is_number_unsigned();
+    };
+    if (!is_count("scans") || !is_count("nodes") || !entry.contains("stamp_offset_s") ||
+        !entry["stamp_offset_s"].is_number() || !entry.contains("floors") ||
+        !entry["floors"].is_array()) {
+      fail("an entry of `drives` lacks `scans`, `nodes`, `stamp_offset_s` or `floors`");
+    }
+    MappedDrive drive{entry["scans"].get<std::size_t>(),
+                      entry["nodes"].get<std::size_t>(),
+                      entry["stamp_offset_s"].get<double>(),
+                      {}};
+    for (const auto& label : entry["floors"]) {
+      if (!label.is_string()) fail("a floor of `drives` is no label");
+      drive.floors.push_back(label.get<std::string>());
+    }
+    result.drives.push_back(std::move(drive));
+  }
 }
 
 bool Exists(const fs::path& path) {
@@ -177,7 +199,7 @@ ResultFolder ReadResultFolder(const std::string& folder) {
     throw InputError(folder + ": holds no trajectory.tum, so `map` did not finish it");
   }
   result.trajectory = ReadTrajectory((root / "trajectory.tum").string());
-  if (Exists(root / "summary.json")) result.floors = ReadFloors((root / "summary.json").string());
+  if (Exists(root / "summary.json")) ReadSummary((root / "summary.json").string(), result);
   if (Exists(root / "nodes.tum") && Exists(root / "graph.g2o")) {
     result.graph = ReadGraph(root);
     if (Exists(root / "closures.csv")) {
@@ -185,6 +207,66 @@ ResultFolder ReadResultFolder(const std::string& folder) {
     }
   }
   return result;
+}
+
+ResultFolder OneDrive(const std::string& folder, const ResultFolder& result, std::size_t number) {
+  const std::size_t drives = std::max<std::size_t>(1, result.drives.size());
+  if (number < 1 || number > drives) {
+    throw InputError("--drive: " + folder + " holds " + std::to_string(drives) +
+                     (drives == 1 ? " drive, not " : " drives, not ") + std::to_string(number));
+  }
+  if (result.drives.empty()) return result;
+  // Ends of what comes before, of which sums of an enemy's numbers may be anything.
+  std::size_t first_scan = 0;
+  std::size_t first_node = 0;
+  for (std::size_t i = 0; i + 1 < number; ++i) {
+    first_scan = std::min(result.trajectory.size(),
+                          first_scan + std::min(result.trajectory.size(), result.drives[i].scans));
+    if (result.graph) {
+      first_node =
+          std::min(result.graph->nodes.size(),
+                   first_node + std::min(result.graph->nodes.size(), result.drives[i].nodes));
+    }
+  }
+  const MappedDrive& drive = result.drives[number - 1];
+  const auto own = [&](const std::vector<StampedPose>& poses, std::size_t first,
+                       std::size_t count) {
+    std::vector<StampedPose> part(
+        poses.begin() + static_cast<std::ptrdiff_t>(first),
+        poses.begin() + static_cast<std::ptrdiff_t>(first + std::min(count, poses.size() - first)));
+    for (StampedPose& pose : part) pose.stamp -= drive.stamp_offset;
+    return part;
+  };
+  ResultFolder one;
+  one.trajectory = own(result.trajectory, first_scan, drive.scans);
+  if (one.trajectory.empty()) {
+    throw InputError(folder + ": trajectory.tum has no scan of drive " + std::to_string(number));
+  }
+  for (const MappedFloor& floor : result.floors) {
+    if (std::find(drive.floors.begin(), drive.floors.end(), floor.label) != drive.floors.end()) {
+      one.floors.push_back(floor);
+    }
+  }
+  if (!result.graph) return one;
+  one.graph.emplace();
+  one.graph->nodes = own(result.graph->nodes, first_node, drive.nodes);
+  const std::size_t nodes = one.graph->nodes.size();
+  const auto is_own = [&](std::size_t node) {
+    return node >= first_node && node - first_node < nodes;
+  };
+  for (const GraphEdge& edge : result.graph->edges) {
+    if (!is_own(edge.from) || !is_own(edge.to)) continue;
+    one.graph->edges.push_back({edge.from - first_node, edge.to - first_node});
+  }
+  if (!result.closures) return one;
+  one.closures.emplace();
+  for (ValidatedClosure closure : *result.closures) {
+    if (!is_own(closure.a) || !is_own(closure.b)) continue;
+    closure.a -= first_node;
+    closure.b -= first_node;
+    one.closures->push_back(closure);
+  }
+  return one;
 }
 
 }  // namespace masked_mapper

@@ -57,6 +57,19 @@ std::string FloorLines(const std::vector<Summary::FloorEntry>& floors) {
   return text;
 }
 
+std::string DriveLines(const std::vector<DriveFacts>& drives) {
+  std::string text;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const DriveFacts& drive = drives[i];
+    std::string rest = "closures to other drives";
+    if (!drive.joined) rest += ", NOT JOINED: a piece of its own";
+    if (!drive.reason.empty()) rest += (drive.joined ? ", " : ": ") + drive.reason;
+    text += Line("drive " + std::to_string(i + 1), drive.closures_to_others,
+                 rest + " (" + drive.log + ")");
+  }
+  return text;
+}
+
 std::string SecondsLines(const Summary& summary) {
   const StageSeconds& seconds = summary.seconds;
   const std::vector<std::pair<std::string, double>> stages = {
@@ -78,7 +91,8 @@ std::string SecondsLines(const Summary& summary) {
 }  // namespace
 
 std::string ClosingTable(const Summary& summary) {
-  return CountLines(summary) + FloorLines(summary.floors) + SecondsLines(summary);
+  return CountLines(summary) + FloorLines(summary.floors) + DriveLines(summary.drives) +
+         SecondsLines(summary);
 }
 
 }  // namespace masked_mapper

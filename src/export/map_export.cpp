@@ -53,6 +53,21 @@ void WriteFloors(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids
   WritePly(building, folder / "building.ply");
 }
 
+// Each drive with the stamps of its own log, so that it can be held against a truth of its own.
+void WriteDrives(const MappingResult& result, const std::filesystem::path& folder) {
+  if (result.drives.size() < 2) return;
+  std::filesystem::create_directory(folder / "drives");
+  for (std::size_t i = 0; i < result.drives.size(); ++i) {
+    const IndexRange poses = PosesOfDrive(result, i);
+    std::vector<TrajectoryPose> own(
+        result.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.begin),
+        result.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.end));
+    for (TrajectoryPose& pose : own) pose.stamp -= result.drives[i].stamp_offset_s;
+    WriteTrajectory(own, result.graph.floors(),
+                    folder / "drives" / (std::to_string(i + 1) + ".tum"));
+  }
+}
+
 }  // namespace
 
 std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
@@ -92,6 +107,7 @@ Summary WriteMap(const MappingResult& result, const RunDescription& run,
                  [&] { WriteOctree(result.graph, grids, options.octree, folder / "building.bt"); });
   WriteFloors(result.graph, grids, folder);
   WriteTrajectory(result.trajectory, result.graph.floors(), folder / "trajectory.tum");
+  WriteDrives(result, folder);
   WriteNodes(result.graph, folder / "nodes.tum");
   WriteG2o(result.graph, folder / "graph.g2o");
   WriteClosures(result.attempts, result.graph, folder / "closures.csv");

@@ -25,16 +25,29 @@ constexpr std::array<const char*, 13> kMapFiles = {
     "building.bt",   "building.pcd",      "building.ply",      "trajectory.tum",
     "nodes.tum",     "graph.g2o",         "closures.csv",      "summary.json",
     "report.html"};
-constexpr const char* kFloorsFolder = "floors";
-constexpr std::array<const char*, 4> kFloorFileEndings = {".pcd", ".pgm", ".yaml", ".g2o"};
+// And the folders in it, by name and the endings of a map's files there.
+struct InnerFolder {
+  const char* name;
+  std::array<const char*, 4> endings;
+};
+constexpr std::array<InnerFolder, 2> kInnerFolders = {{
+    {"floors", {".pcd", ".pgm", ".yaml", ".g2o"}},
+    {"drives", {".tum", ".tum", ".tum", ".tum"}},
+}};
 
 bool IsMapFile(const fs::path& name) {
   return std::find(kMapFiles.begin(), kMapFiles.end(), name) != kMapFiles.end();
 }
 
-bool IsFloorFile(const fs::path& name) {
-  return std::find(kFloorFileEndings.begin(), kFloorFileEndings.end(), name.extension()) !=
-         kFloorFileEndings.end();
+const InnerFolder* InnerFolderCalled(const fs::path& name) {
+  const auto found = std::find_if(kInnerFolders.begin(), kInnerFolders.end(),
+                                  [&](const InnerFolder& folder) { return name == folder.name; });
+  return found == kInnerFolders.end() ? nullptr : &*found;
+}
+
+bool IsFileOf(const InnerFolder& folder, const fs::path& name) {
+  return std::find(folder.endings.begin(), folder.endings.end(), name.extension()) !=
+         folder.endings.end();
 }
 
 // The target without links, dots and a slash at its end.
@@ -90,14 +103,15 @@ void CarryOver(const fs::path& replaced, const fs::path& current) {
   for (const fs::directory_entry& entry : fs::directory_iterator(replaced)) {
     const fs::path name = entry.path().filename();
     if (IsMapFile(name)) continue;
-    if (name != kFloorsFolder || !entry.is_directory()) {
+    const InnerFolder* folder = InnerFolderCalled(name);
+    if (folder == nullptr || !entry.is_directory()) {
       Rename(entry.path(), current / name);
       continue;
     }
-    for (const fs::directory_entry& floor_entry : fs::directory_iterator(entry.path())) {
-      if (IsFloorFile(floor_entry.path().filename())) continue;
-      fs::create_directory(current / kFloorsFolder);
-      Rename(floor_entry.path(), current / kFloorsFolder / floor_entry.path().filename());
+    for (const fs::directory_entry& inner : fs::directory_iterator(entry.path())) {
+      if (IsFileOf(*folder, inner.path().filename())) continue;
+      fs::create_directory(current / name);
+      Rename(inner.path(), current / name / inner.path().filename());
     }
   }
 }

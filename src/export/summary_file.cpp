@@ -111,6 +111,22 @@ Json FloorsJson(const std::vector<Summary::FloorEntry>& floors) {
   return json;
 }
 
+Json DrivesJson(const std::vector<DriveFacts>& drives) {
+  Json json = Json::array();
+  for (const DriveFacts& drive : drives) {
+    json.push_back({{"log", drive.log},
+                    {"joined", drive.joined},
+                    {"piece", drive.piece},
+                    {"scans", drive.scans},
+                    {"nodes", drive.nodes},
+                    {"closures_to_others", drive.closures_to_others},
+                    {"stamp_offset_s", drive.stamp_offset_s},
+                    {"floors", drive.floors},
+                    {"reason", drive.reason}});
+  }
+  return json;
+}
+
 Json SecondsJson(const StageSeconds& seconds) {
   const auto rounded = [](double value) { return Rounded(value, 1e4); };
   return {{"read", rounded(seconds.read)},
@@ -158,19 +174,21 @@ Summary Summarise(const MappingResult& result, const RunDescription& run,
   summary.seconds = WithTotal(result.seconds);
   summary.peak_memory_mib = PeakMemoryMib();
   summary.warnings = result.warnings;
+  if (result.drives.size() > 1) summary.drives = FactsOfDrives(result);
   return summary;
 }
 
 std::string SummaryText(const Summary& summary) {
-  const Json json = {{"log", summary.run.log},
-                     {"mask", summary.run.mask},
-                     {"motion_source", summary.motion_source},
-                     {"counts", CountsJson(summary.counts)},
-                     {"floors", FloorsJson(summary.floors)},
-                     {"seconds", SecondsJson(summary.seconds)},
-                     {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
-                     {"options", SettingsJson(summary.run.settings)},
-                     {"warnings", summary.warnings}};
+  Json json = {{"log", summary.run.log},
+               {"mask", summary.run.mask},
+               {"motion_source", summary.motion_source},
+               {"counts", CountsJson(summary.counts)},
+               {"floors", FloorsJson(summary.floors)},
+               {"seconds", SecondsJson(summary.seconds)},
+               {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
+               {"options", SettingsJson(summary.run.settings)},
+               {"warnings", summary.warnings}};
+  if (!summary.drives.empty()) json["drives"] = DrivesJson(summary.drives);
   // A path may hold bytes that are no UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -12,6 +13,8 @@
 
 #include "database.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
 #include "packed_bytes.hpp"
@@ -24,12 +27,19 @@ namespace {
 constexpr std::int64_t kCheckpointApplicationId = 0x4d6d636b;  // "Mmck"
 /// To be raised whenever the state of anything changes its shape. A checkpoint lives for hours and
 /// is not upgraded.
-constexpr std::int64_t kCheckpointVersion = 1;
+constexpr std::int64_t kCheckpointVersion = 2;
 
 /// A checkpoint may take this share of the time to the next one.
 constexpr double kShare = 0.03;
 
-constexpr const char* kFileName = "checkpoint.mmck";
+// Of the first log, and of later ones.
+std::string FileName(std::size_t drive) {
+  return drive == 0 ? "checkpoint.mmck" : "checkpoint-" + std::to_string(drive + 1) + ".mmck";
+}
+
+fs::path FinishedFile(const fs::path& folder, std::size_t drive) {
+  return folder / ("drive-" + std::to_string(drive + 1) + ".mmap");
+}
 
 // A file that has grown, was cut or replaced; read at both ends alone, since logs are large.
 std::string IdentityOf(const std::string& path) {
@@ -50,9 +60,41 @@ std::string IdentityOf(const std::string& path) {
   return std::to_string(size) + " bytes, checksum " + std::to_string(checksum);
 }
 
-std::string LogIdentity(const MapOrigin& origin) {
-  const std::string floors = IdentityOf(origin.options.floors.file);
-  return IdentityOf(origin.log) + (floors.empty() ? "" : "; floors: " + floors);
+std::string LogIdentity(const std::string& log, const std::string& floors_file) {
+  const std::string floors = IdentityOf(floors_file);
+  return IdentityOf(log) + (floors.empty() ? "" : "; floors: " + floors);
+}
+
+// Of everything that is read, a line each, by name.
+std::vector<std::pair<std::string, std::string>> Identities(const MapOrigin& origin) {
+  std::vector<std::pair<std::string, std::string>> lines = {
+      {origin.log, LogIdentity(origin.log, origin.options.floors.file)}};
+  for (const MapOrigin::LaterLog& later : origin.later_logs) {
+    lines.emplace_back(later.log, LogIdentity(later.log, later.floors));
+  }
+  if (!origin.onto.empty()) lines.emplace_back(origin.onto, IdentityOf(origin.onto));
+  return lines;
+}
+
+std::string IdentityText(const MapOrigin& origin) {
+  std::string text;
+  for (const auto& [name, line] : Identities(origin)) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+// Throws InputError naming the first that has changed since.
+void CheckUnchanged(const MapOrigin& origin, const std::string& identity_before) {
+  if (IdentityText(origin) == identity_before) return;
+  std::istringstream before(identity_before);
+  for (const auto& [name, line] : Identities(origin)) {
+    std::string line_before;
+    std::getline(before, line_before);
+    if (line != line_before) {
+      throw InputError(name +
+                       ": has changed since the unfinished map was begun; --force starts afresh");
+    }
+  }
+  throw InputError("the unfinished map is of other logs; --force starts afresh");
 }
 
 using Key = std::vector<std::pair<std::string, std::string>>;
@@ -60,6 +102,14 @@ using Key = std::vector<std::pair<std::string, std::string>>;
 // Everything that the map depends on, but for the program.
 Key KeyOf(const MapOrigin& origin) {
   Key key = {{"log", origin.log}, {"mask", origin.mask}};
+  for (std::size_t i = 0; i < origin.later_logs.size(); ++i) {
+    const std::string number = std::to_string(i + 2);
+    key.emplace_back("log " + number, origin.later_logs[i].log);
+    if (!origin.later_logs[i].floors.empty()) {
+      key.emplace_back("floors of log " + number, origin.later_logs[i].floors);
+    }
+  }
+  if (!origin.onto.empty()) key.emplace_back("--onto", origin.onto);
   Options options = origin.options;
   for (const OptionEntry& entry : OptionTable(options)) {
     if (entry.key != "threads") key.emplace_back(entry.key, ValueText(entry));
@@ -74,7 +124,16 @@ std::string FirstDifference(const Key& before, const Key& now) {
     if (found == old.end()) return key + " was not known, now it is " + value;
     if (found->second != value) return key + " was " + found->second + ", now it is " + value;
   }
-  return before.size() == now.size() ? "" : "it had other options";
+  const std::map<std::string, std::string> asked(now.begin(), now.end());
+  for (const auto& [key, value] : before) {
+    if (asked.count(key) == 0) return key + " was " + value + ", now there is none";
+  }
+  return "";
+}
+
+void RemoveUnfinished(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
 }
 
 enum class PieceKind : std::int64_t { kPoses, kScans, kPoints };
@@ -221,8 +280,9 @@ class CheckpointFile::Impl {
 };
 
 CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, double interval_s,
-                               bool resume)
+                               bool resume, std::size_t drive)
     : folder_(UnfinishedFolder(out)),
+      file_(folder_ / FileName(drive)),
       origin_(origin),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_s))),
@@ -232,14 +292,15 @@ CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, dou
 CheckpointFile::~CheckpointFile() = default;
 
 bool CheckpointFile::Exists(const fs::path& out) {
-  return fs::exists(UnfinishedFolder(out) / kFileName);
+  const fs::path folder = UnfinishedFolder(out);
+  return fs::exists(folder / FileName(0)) || fs::exists(FinishedFile(folder, 0));
 }
 
 std::optional<Checkpoint> CheckpointFile::Load() {
-  if (!resume_ || !fs::exists(folder_ / kFileName)) return std::nullopt;
-  const std::string name = (folder_ / kFileName).string();
+  if (!resume_ || !fs::exists(file_)) return std::nullopt;
+  const std::string name = file_.string();
   try {
-    auto opened = std::make_unique<Impl>(folder_ / kFileName);
+    auto opened = std::make_unique<Impl>(file_);
     if (opened->IsEmpty()) return std::nullopt;
     if (!opened->IsOurs()) {
       throw InputError(name + ": written by another version of the program; --force starts afresh");
@@ -249,11 +310,7 @@ std::optional<Checkpoint> CheckpointFile::Load() {
       throw InputError("the unfinished map was made otherwise: " + difference +
                        "; --force starts afresh");
     }
-    if (opened->ReadLogIdentity() != LogIdentity(origin_)) {
-      throw InputError(origin_.log +
-                       ": has changed since the unfinished map was begun; --force "
-                       "starts afresh");
-    }
+    CheckUnchanged(origin_, opened->ReadLogIdentity());
     std::optional<Checkpoint> checkpoint = opened->Read();
     if (!checkpoint) return std::nullopt;
     impl_ = std::move(opened);
@@ -279,16 +336,15 @@ void CheckpointFile::Save(const CheckpointState& state, const MappingResult& map
     if (!impl_) {
       fs::create_directories(folder_);
       for (const char* ending : {"", "-wal", "-journal", "-shm"}) {
-        fs::remove((folder_ / kFileName).string() + ending);
+        fs::remove(file_.string() + ending);
       }
-      auto made = std::make_unique<Impl>(folder_ / kFileName);
-      made->Make(KeyOf(origin_), LogIdentity(origin_));
+      auto made = std::make_unique<Impl>(file_);
+      made->Make(KeyOf(origin_), IdentityText(origin_));
       impl_ = std::move(made);
     }
     impl_->Write(state, map);
   } catch (const DatabaseError& error) {
-    throw std::runtime_error("cannot write " + (folder_ / kFileName).string() + ": " +
-                             error.what());
+    throw std::runtime_error("cannot write " + file_.string() + ": " + error.what());
   }
   has_checkpoint_ = true;
   progress_ = state.progress;
@@ -305,8 +361,48 @@ void CheckpointFile::StartOver() {
 void CheckpointFile::Remove() {
   impl_.reset();
   has_checkpoint_ = false;
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  RemoveUnfinished(folder_);
 }
+
+FinishedDrives::FinishedDrives(const fs::path& out, const MapOrigin& origin, bool resume)
+    : folder_(UnfinishedFolder(out)), origin_(origin), resume_(resume) {}
+
+std::optional<MappingResult> FinishedDrives::Load(std::size_t drive) {
+  const fs::path file = FinishedFile(folder_, drive);
+  if (!resume_ || !fs::exists(file)) return std::nullopt;
+  try {
+    SavedMap saved = ReadMapFile(file);
+    const std::string difference = DifferenceFrom(saved.origin, origin_);
+    if (!difference.empty()) {
+      throw InputError("the unfinished map was made otherwise: " + difference);
+    }
+    CheckUnchanged(origin_, saved.origin.identity);
+    ++count_;
+    return std::move(saved.result);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    const bool says_how = text.find("--force") != std::string::npos;
+    throw InputError(text + (says_how ? "" : "; --force starts afresh"));
+  }
+}
+
+void FinishedDrives::Save(std::size_t drive, const MappingResult& result) {
+  std::error_code ignored;
+  fs::create_directories(folder_);
+  const fs::path file = FinishedFile(folder_, drive);
+  const fs::path partial = file.string() + ".partial";
+  fs::remove(partial, ignored);
+  MapOrigin origin = origin_;
+  origin.identity = IdentityText(origin_);
+  WriteMapFile(origin, result, partial);
+  fs::rename(partial, file);
+  fs::remove(folder_ / FileName(drive), ignored);
+  for (const char* ending : {"-wal", "-journal", "-shm"}) {
+    fs::remove((folder_ / FileName(drive)).string() + ending, ignored);
+  }
+  ++count_;
+}
+
+void FinishedDrives::Remove() { RemoveUnfinished(folder_); }
 
 }  // namespace masked_mapper

@@ -14,6 +14,7 @@
 #include "database.hpp"
 #include "map_rows.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/drives.hpp"
 #include "masked_mapper/mapping/option_table.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
@@ -43,6 +44,7 @@ class Reader {
     ReadAttempts();
     ReadTrajectory();
     ReadScans();
+    ReadDrives();
     return std::move(map_);
   }
 
@@ -147,6 +149,13 @@ class Reader {
     }
     map_.origin.log = values["log"];
     map_.origin.mask = values["mask"];
+    map_.origin.onto = values["onto"];
+    map_.origin.identity = values["identity"];
+    for (std::size_t number = 2;; ++number) {
+      const auto later = values.find("log." + std::to_string(number));
+      if (later == values.end()) break;
+      map_.origin.later_logs.push_back({later->second, values["floors." + std::to_string(number)]});
+    }
     map_.result.motion_source =
         NameValue<MotionSource>(values["motion_source"], kMotionSources, "run");
   }
@@ -184,6 +193,7 @@ class Reader {
       floor.elevation = Finite(rows, "floors");
       floor.elevation_sigma = Finite(rows, "floors");
       floor.elevation_measured = TakeFlag(rows, "floors");
+      floor.label_given = TakeFlag(rows, "floors");
       graph.AddFloor(std::move(floor));
     }
   }
@@ -334,6 +344,45 @@ class Reader {
       scan.ranges.push_back(range);
     }
     return scan;
+  }
+
+  // Drives follow each other, each with a node and a pose at least, and keep to themselves.
+  void ReadDrives() {
+    MappingResult& map = map_.result;
+    Statement rows(database_, "SELECT * FROM drives ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, map.drives.size(), "drives");
+      Drive drive;
+      drive.log = rows.Text();
+      drive.first_pose =
+          static_cast<std::size_t>(TakeBelow(rows, map.trajectory.size(), "drives", "the pose"));
+      drive.first_node =
+          static_cast<NodeId>(TakeBelow(rows, map.graph.nodes().size(), "drives", "the node"));
+      drive.stamp_offset_s = Finite(rows, "drives");
+      drive.motion_source = TakeName<MotionSource>(rows, kMotionSources, "drives");
+      drive.reason = rows.Text();
+      const bool follows = map.drives.empty() ? drive.first_pose == 0 && drive.first_node == 0
+                                              : drive.first_pose > map.drives.back().first_pose &&
+                                                    drive.first_node > map.drives.back().first_node;
+      if (!follows) Malformed("drives", "drives that do not follow each other");
+      map.drives.push_back(std::move(drive));
+    }
+    if (map.drives.size() < 2) return;
+    for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
+      const IndexRange nodes = NodesOfDrive(map, drive);
+      const IndexRange poses = PosesOfDrive(map, drive);
+      for (std::size_t i = poses.begin; i < poses.end; ++i) {
+        const auto node = static_cast<std::size_t>(map.trajectory[i].node_before);
+        if (node < nodes.begin || node >= nodes.end) {
+          Malformed("drives", "a pose at a node of another drive");
+        }
+      }
+    }
+    for (std::size_t i = 1; i < map.kept_scans.size(); ++i) {
+      if (map.kept_scans[i].trajectory_index <= map.kept_scans[i - 1].trajectory_index) {
+        Malformed("scans", "scans that do not follow each other");
+      }
+    }
   }
 
   const Database& database_;

@@ -38,6 +38,14 @@ void WriteOrigin(const MapOrigin& origin, const MappingResult& result, const Dat
   Statement run(database, "INSERT INTO run(key, value) VALUES (?,?)");
   run.BindText("log").BindText(origin.log).Put();
   run.BindText("mask").BindText(origin.mask).Put();
+  for (std::size_t i = 0; i < origin.later_logs.size(); ++i) {
+    const std::string number = std::to_string(i + 2);
+    run.BindText("log." + number).BindText(origin.later_logs[i].log).Put();
+    if (origin.later_logs[i].floors.empty()) continue;
+    run.BindText("floors." + number).BindText(origin.later_logs[i].floors).Put();
+  }
+  if (!origin.onto.empty()) run.BindText("onto").BindText(origin.onto).Put();
+  if (!origin.identity.empty()) run.BindText("identity").BindText(origin.identity).Put();
   run.BindText("motion_source").BindText(NameOf(kMotionSources, result.motion_source)).Put();
   Statement insert(database, "INSERT INTO options(key, value) VALUES (?,?)");
   Options options = origin.options;
@@ -67,11 +75,11 @@ void WriteLog(const MappingResult& result, const Database& database) {
 }
 
 void WriteNodes(const PoseGraph& graph, const Database& database) {
-  Statement floor(database, "INSERT INTO floors VALUES (?,?,?,?,?)");
+  Statement floor(database, "INSERT INTO floors VALUES (?,?,?,?,?,?)");
   for (std::size_t i = 0; i < graph.floors().size(); ++i) {
     const Floor& f = graph.floors()[i];
     floor.Bind(Id(i)).BindText(f.label).Bind(f.elevation).Bind(f.elevation_sigma);
-    floor.Bind(std::int64_t{f.elevation_measured}).Put();
+    floor.Bind(std::int64_t{f.elevation_measured}).Bind(std::int64_t{f.label_given}).Put();
   }
   Statement insert(database, "INSERT INTO nodes VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
@@ -162,6 +170,16 @@ void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& databas
   }
 }
 
+void WriteDrives(const std::vector<Drive>& drives, const Database& database) {
+  Statement insert(database, "INSERT INTO drives VALUES (?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const Drive& drive = drives[i];
+    insert.Bind(Id(i)).BindText(drive.log).Bind(Id(drive.first_pose));
+    insert.Bind(std::int64_t{drive.first_node}).Bind(drive.stamp_offset_s);
+    insert.BindText(NameOf(kMotionSources, drive.motion_source)).BindText(drive.reason).Put();
+  }
+}
+
 }  // namespace
 
 void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
@@ -182,6 +200,7 @@ void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
     WriteAttempts(result.attempts, database);
     WriteTrajectory(result.trajectory, database);
     WriteScans(result.kept_scans, database);
+    WriteDrives(result.drives, database);
     Seal(database);
     transaction.Commit();
   } catch (const DatabaseError& error) {

@@ -2,8 +2,11 @@
 #include "schema.hpp"
 
 #include <array>
+#include <cmath>
+#include <string_view>
 #include <vector>
 
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "packed_bytes.hpp"
 
 namespace masked_mapper {
@@ -16,7 +19,7 @@ struct Table {
 
 // Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
 // are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
-constexpr std::array<Table, 12> kTables = {{
+constexpr std::array<Table, 13> kTables = {{
     {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
@@ -24,7 +27,8 @@ constexpr std::array<Table, 12> kTables = {{
     {"warnings", "id INTEGER PRIMARY KEY, text TEXT NOT NULL"},
     {"floors",
      "id INTEGER PRIMARY KEY, label TEXT NOT NULL, elevation ANY NOT NULL,"
-     " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL"},
+     " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL,"
+     " label_given INTEGER NOT NULL"},
     {"nodes",
      "id INTEGER PRIMARY KEY, stamp ANY NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
      " odom_x ANY NOT NULL, odom_y ANY NOT NULL, odom_theta ANY NOT NULL,"
@@ -49,10 +53,30 @@ constexpr std::array<Table, 12> kTables = {{
      " first_angle ANY NOT NULL, angle_step ANY NOT NULL, max_range ANY NOT NULL,"
      " odom_x ANY, odom_y ANY, odom_theta ANY,"
      " beam_count INTEGER NOT NULL, ranges BLOB NOT NULL, ranges_checksum INTEGER NOT NULL"},
+    {"drives",
+     "id INTEGER PRIMARY KEY, log TEXT NOT NULL, first_pose INTEGER NOT NULL,"
+     " first_node INTEGER NOT NULL REFERENCES nodes(id), stamp_offset ANY NOT NULL,"
+     " motion_source TEXT NOT NULL, reason TEXT NOT NULL"},
     {"content",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, row_count INTEGER NOT NULL,"
      " checksum INTEGER NOT NULL"},
 }};
+
+// Version 1 knew one log, and nothing of who had named a floor.
+constexpr const char* kFloorsOfVersion1 =
+    "id INTEGER PRIMARY KEY, label TEXT NOT NULL, elevation ANY NOT NULL,"
+    " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL";
+
+std::vector<Table> TablesOf(std::int64_t version) {
+  std::vector<Table> tables;
+  for (const Table& table : kTables) {
+    const std::string_view name = table.name;
+    if (version == 1 && name == "drives") continue;
+    tables.push_back(version == 1 && name == "floors" ? Table{table.name, kFloorsOfVersion1}
+                                                      : table);
+  }
+  return tables;
+}
 
 std::string CreateStatement(const Table& table) {
   return std::string("CREATE TABLE ") + table.name + "(" + table.columns + ") STRICT";
@@ -100,6 +124,25 @@ RowDigest DigestOf(const Database& database, const std::string& table) {
   return digest;
 }
 
+// A floor that is not called by its place among the others was named by somebody.
+void NoteGivenLabels(Database& database) {
+  std::vector<FloorLevel> levels;
+  std::vector<std::string> labels;
+  Statement rows(database, "SELECT label, elevation FROM floors ORDER BY id");
+  while (rows.Next()) {
+    labels.emplace_back(rows.Text());
+    levels.emplace_back();
+    levels.back().elevation = rows.Real();
+    if (!std::isfinite(levels.back().elevation)) throw DatabaseError("a floor without a height");
+  }
+  if (levels.empty()) return;
+  const std::vector<std::string> names = FloorNames(levels);
+  Statement note(database, "UPDATE floors SET label_given = 1 WHERE id = ?");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] != labels[i]) note.Bind(static_cast<std::int64_t>(i)).Put();
+  }
+}
+
 }  // namespace
 
 void MakeTables(Database& database) {
@@ -117,17 +160,18 @@ void Seal(Database& database) {
   }
 }
 
-void CheckSeal(Database& database, std::int64_t /*version*/) {
+void CheckSeal(Database& database, std::int64_t version) {
+  const std::vector<Table> tables = TablesOf(version);
   // Tables first: what is not ours (a view, an index, a trigger) must not be run.
   Statement schema(database, "SELECT sql FROM sqlite_master ORDER BY rowid");
   std::size_t found = 0;
   for (; schema.Next(); ++found) {
-    if (found == kTables.size() || schema.NextType() != ValueType::kText ||
-        schema.Text() != CreateStatement(kTables[found])) {
+    if (found == tables.size() || schema.NextType() != ValueType::kText ||
+        schema.Text() != CreateStatement(tables[found])) {
       throw DatabaseError("its tables are not those of a saved map");
     }
   }
-  if (found != kTables.size()) throw DatabaseError("its tables are not those of a saved map");
+  if (found != tables.size()) throw DatabaseError("its tables are not those of a saved map");
   if (database.Text("PRAGMA integrity_check(1)") != "ok") {
     throw DatabaseError("its pages contradict each other");
   }
@@ -135,7 +179,7 @@ void CheckSeal(Database& database, std::int64_t /*version*/) {
   std::size_t checked = 0;
   for (; content.Next(); ++checked) {
     const std::string name(content.Text());
-    if (checked + 1 >= kTables.size() || name != kTables[checked].name) {
+    if (checked + 1 >= tables.size() || name != tables[checked].name) {
       throw DatabaseError("its table of contents is not that of a saved map");
     }
     const RowDigest digest = DigestOf(database, name);
@@ -144,9 +188,21 @@ void CheckSeal(Database& database, std::int64_t /*version*/) {
       throw DatabaseError("the rows of table " + name + " have changed since they were written");
     }
   }
-  if (checked + 1 != kTables.size()) throw DatabaseError("its table of contents is cut off");
+  if (checked + 1 != tables.size()) throw DatabaseError("its table of contents is cut off");
 }
 
-void Upgrade(Database& /*database*/, std::int64_t /*version*/) {}
+// The columns are added where the newest version has them: rows are read by place.
+void Upgrade(Database& database, std::int64_t version) {
+  if (version >= kMapVersion) return;
+  database.Run("ALTER TABLE floors ADD COLUMN label_given INTEGER NOT NULL DEFAULT 0");
+  for (const Table& table : kTables) {
+    if (std::string_view(table.name) == "drives") database.Run(CreateStatement(table));
+  }
+  NoteGivenLabels(database);
+  if (database.Number("SELECT count(*) FROM nodes") == 0) return;
+  database.Run(
+      "INSERT INTO drives SELECT 0, (SELECT value FROM run WHERE key = 'log'), 0, 0, 0.0,"
+      " (SELECT value FROM run WHERE key = 'motion_source'), ''");
+}
 
 }  // namespace masked_mapper

@@ -38,7 +38,8 @@ void Serialize(Archive& archive, ClosureAttempt& attempt) {
 
 template <class Archive>
 void Serialize(Archive& archive, Floor& floor) {
-  archive(floor.label, floor.elevation, floor.elevation_sigma, floor.elevation_measured);
+  archive(floor.label, floor.elevation, floor.elevation_sigma, floor.elevation_measured,
+          floor.label_given);
 }
 
 template <class Archive>
@@ -232,8 +233,8 @@ LogSurvey UnpackSurvey(const std::string& bytes) {
 
 template <class Archive>
 void MaskedMapper::SerializeState(Archive& archive) {
-  archive(motion_, validator_, optimizer_, result_.attempts, last_scan_node_, in_transit_,
-          on_stairs_, attempt_of_hypothesis_, attempt_of_edge_, travelled_since_kept_m_);
+  archive(motion_, result_.attempts, closer_, last_scan_node_, in_transit_, on_stairs_,
+          travelled_since_kept_m_);
 }
 
 std::string MaskedMapper::SaveState() {
@@ -252,17 +253,8 @@ void MaskedMapper::RestoreState(const std::string& bytes, GrownParts parts) {
   reader.RequireEnd();
   CheckMap(result_, reader);
   const std::size_t nodes = result_.graph.nodes().size();
-  const std::size_t attempts = result_.attempts.size();
-  bool holds = result_.graph.floors().size() == floors_.levels.size() &&
-               attempt_of_hypothesis_.size() == validator_.hypotheses().size() &&
-               (!last_scan_node_ || Exists(*last_scan_node_, nodes));
-  for (const Hypothesis& hypothesis : validator_.hypotheses()) {
-    holds = holds && Exists(hypothesis.a, nodes) && Exists(hypothesis.b, nodes);
-  }
-  for (const std::size_t attempt : attempt_of_hypothesis_) holds = holds && attempt < attempts;
-  for (const auto& [edge, attempt] : attempt_of_edge_) {
-    holds = holds && Exists(edge, result_.graph.edges().size()) && attempt < attempts;
-  }
+  const bool holds = result_.graph.floors().size() == floors_.levels.size() &&
+                     (!last_scan_node_ || Exists(*last_scan_node_, nodes));
   if (!holds) reader.Refuse("a mapper that does not hold together");
 }
 

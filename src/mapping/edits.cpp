@@ -12,6 +12,7 @@
 
 #include "masked_mapper/log/did_you_mean.hpp"
 #include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/mapping/drives.hpp"
 #include "masked_mapper/mapping/trajectory.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
@@ -237,11 +238,26 @@ class Editor {
       T_a_b = Inverse(T_a_b);
     }
     map_.graph.AddEdge({a, b, T_a_b, EdgeKind::kClosure});
+    NoteJoined(DriveOfNode(map_, a), DriveOfNode(map_, b));
     attempt.a = a;
     attempt.b = b;
     attempt.T_a_b = T_a_b;
     map_.attempts.push_back(std::move(attempt));
     pulled_ = true;
+  }
+
+  /// A drive that was a piece of its own is one no more.
+  void NoteJoined(std::size_t newer, std::size_t older) {
+    if (newer == older) return;
+    Drive& drive = map_.drives[std::max(newer, older)];
+    const std::string stale = drive.log + ": stays a piece of its own";
+    const auto is_stale = [&](const std::string& warning) {
+      return warning.compare(0, stale.size(), stale) == 0;
+    };
+    const auto gone = std::remove_if(map_.warnings.begin(), map_.warnings.end(), is_stale);
+    if (gone == map_.warnings.end()) return;
+    map_.warnings.erase(gone, map_.warnings.end());
+    drive.reason = "joined by hand";
   }
 
   struct Match {
@@ -347,7 +363,10 @@ class Editor {
       }
     }
     Rebuild([&](FloorId id, Floor& changed) {
-      if (id == floor) changed.label = name;
+      if (id == floor) {
+        changed.label = name;
+        changed.label_given = true;
+      }
       return id;
     });
     return "floor " + label + " is called " + name;

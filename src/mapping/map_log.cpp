@@ -96,6 +96,9 @@ class LogDrive {
     result.log = log_->Statistics();
     result.seconds.read += read_seconds_;
     result.motion_source = settled_.motion.source;
+    result.drives.emplace_back();
+    result.drives.back().log = path_;
+    result.drives.back().motion_source = settled_.motion.source;
     for (const std::string& warning : survey_.warnings) {
       result.warnings.push_back(path_ + ": " + warning);
     }

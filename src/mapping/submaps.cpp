@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "masked_mapper/mapping/drives.hpp"
+
 namespace masked_mapper {
 
 LocalMap Submaps::Build(NodeId node) const {
@@ -16,14 +18,21 @@ LocalMap Submaps::Build(NodeId node) const {
   const auto pose_of = [&](const KeptScan& scan) -> const TrajectoryPose& {
     return result_.trajectory[scan.trajectory_index];
   };
+  // Those of the node's own drive: another's motion path is another.
+  const IndexRange poses = PosesOfDrive(result_, DriveOfNode(result_, node));
+  const auto is_before = [](const KeptScan& scan, std::size_t pose) {
+    return scan.trajectory_index < pose;
+  };
+  const auto begin = std::lower_bound(kept.begin(), kept.end(), poses.begin, is_before);
+  const auto end = std::lower_bound(begin, kept.end(), poses.end, is_before);
   const auto first_after =
-      std::lower_bound(kept.begin(), kept.end(), center.stamp,
+      std::lower_bound(begin, end, center.stamp,
                        [](const KeptScan& scan, double stamp) { return scan.scan.stamp < stamp; });
   // Outwards in both directions until the way travelled is long enough; another floor ends it.
-  const auto add = [&](auto scan, auto end, auto next) {
+  const auto add = [&](auto scan, auto last, auto next) {
     double travelled = 0.0;
     Pose2 T_odom_before = center.T_odom_robot;
-    for (; scan != end; scan = next(scan)) {
+    for (; scan != last; scan = next(scan)) {
       const TrajectoryPose& pose = pose_of(*scan);
       travelled += Distance(T_odom_before, pose.T_odom_robot);
       if (travelled > options_.half_length_m || pose.floor != center.floor) break;
@@ -31,8 +40,9 @@ LocalMap Submaps::Build(NodeId node) const {
       scans.push_back({PointsInRobot(scan->scan), Between(center.T_odom_robot, pose.T_odom_robot)});
     }
   };
-  add(first_after, kept.end(), [](auto scan) { return scan + 1; });
-  add(std::make_reverse_iterator(first_after), kept.rend(), [](auto scan) { return scan + 1; });
+  add(first_after, end, [](auto scan) { return scan + 1; });
+  add(std::make_reverse_iterator(first_after), std::make_reverse_iterator(begin),
+      [](auto scan) { return scan + 1; });
   map.Add(scans);
   return map;
 }
@@ -61,7 +71,8 @@ const LocalMap& Submaps::SubmapOf(NodeId node) {
   const TrajectoryPose& last = result_.trajectory[last_kept];
   const bool is_complete =
       Distance(center.T_odom_robot, last.T_odom_robot) > options_.half_length_m ||
-      center.floor != last.floor;
+      center.floor != last.floor ||
+      DriveOfNode(result_, node) + 1 < std::max<std::size_t>(1, result_.drives.size());
   return submaps_.emplace(node, Entry{Build(node), recently_used_.begin(), is_complete})
       .first->second.map;
 }
@@ -70,6 +81,7 @@ ScanPoints::ConstPtr Submaps::PointsAt(NodeId node) const {
   const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
   if (center.HasScan()) return center.points_in_robot;
   const std::vector<KeptScan>& kept = result_.kept_scans;
+  const IndexRange poses = PosesOfDrive(result_, DriveOfNode(result_, node));
   const auto after =
       std::lower_bound(kept.begin(), kept.end(), center.stamp,
                        [](const KeptScan& scan, double stamp) { return scan.scan.stamp < stamp; });
@@ -80,6 +92,7 @@ ScanPoints::ConstPtr Submaps::PointsAt(NodeId node) const {
     const Pose2 T_node_here = Between(center.T_odom_robot, pose.T_odom_robot);
     const double distance = T_node_here.Translation().norm();
     if (pose.floor != center.floor || distance > options_.half_length_m) return;
+    if (scan.trajectory_index < poses.begin || scan.trajectory_index >= poses.end) return;
     if (nearest != nullptr && distance >= T_node_scan.Translation().norm()) return;
     nearest = &scan;
     T_node_scan = T_node_here;

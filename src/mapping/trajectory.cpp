@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/mapping/trajectory.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace masked_mapper {
@@ -10,6 +11,16 @@ namespace {
 double StepLength(const Pose2& T_odom_from, const Pose2& T_odom_to) {
   return Distance(T_odom_from, T_odom_to) +
          std::abs(WrapAngle(T_odom_to.theta - T_odom_from.theta));
+}
+
+/// Whether motion led from this node to the next one made: not from one drive to another.
+bool HasNext(const PoseGraph& graph, std::size_t node) {
+  const auto next = static_cast<NodeId>(node + 1);
+  const std::vector<EdgeId>& edges = graph.EdgesOf(static_cast<NodeId>(node));
+  return std::any_of(edges.begin(), edges.end(), [&](EdgeId id) {
+    const Edge& edge = graph.edges()[static_cast<std::size_t>(id)];
+    return edge.kind != EdgeKind::kClosure && edge.to == next;
+  });
 }
 
 }  // namespace
@@ -29,7 +40,7 @@ void BendTrajectory(const PoseGraph& graph, std::vector<TrajectoryPose>& traject
       previous = &trajectory[end].T_odom_robot;
       travelled.push_back(length);
     }
-    const bool has_next = node + 1 < nodes.size();
+    const bool has_next = HasNext(graph, node);
     if (has_next) length += StepLength(*previous, nodes[node + 1].T_odom_robot);
     for (std::size_t i = begin; i < end; ++i) {
       TrajectoryPose& pose = trajectory[i];

@@ -127,6 +127,108 @@ TEST(MapFileReader, DamageIsNoticed) {
   }
 }
 
+/// Of two logs: the second drive made the last node, and the scans from there on.
+MappingResult MapOfTwoDrives() {
+  MappingResult map = SampleMap();
+  map.drives.resize(2);
+  map.drives[0].log = "one.log";
+  map.drives[1].log = "two \"logs\".gz";
+  map.drives[1].reason = "7 of 9 places fit";
+  map.drives[1].stamp_offset_s = 3600.0;
+  map.drives[1].motion_source = MotionSource::kOdometry;
+  map.drives[1].first_node = map.trajectory.back().node_before;
+  while (map.trajectory[map.drives[1].first_pose].node_before < map.drives[1].first_node) {
+    ++map.drives[1].first_pose;
+  }
+  PoseGraph graph;
+  for (Floor floor : map.graph.floors()) {
+    floor.label_given = floor.label == map.graph.floors().back().label;
+    graph.AddFloor(floor);
+  }
+  for (const Node& node : map.graph.nodes()) graph.AddNode(node);
+  for (const Edge& edge : map.graph.edges()) graph.AddEdge(edge);
+  map.graph = graph;
+  return map;
+}
+
+TEST(MapFileReader, GivesBackDrives) {
+  const TestFolder folder;
+  MapOrigin origin{"one.log", "openings", {}};
+  origin.later_logs = {{"two.log", ""}, {"three.log", "floors.csv"}};
+  origin.onto = "old/building.mmap";
+  origin.identity = "12 bytes\n13 bytes";
+  const MappingResult map = MapOfTwoDrives();
+  WriteMapFile(origin, map, folder / "a.mmap");
+  const SavedMap read = ReadMapFile(folder / "a.mmap");
+  EXPECT_TRUE(SameMap(map, read.result));
+  ASSERT_EQ(read.origin.later_logs.size(), 2U);
+  EXPECT_EQ(read.origin.later_logs[0].log, "two.log");
+  EXPECT_EQ(read.origin.later_logs[0].floors, "");
+  EXPECT_EQ(read.origin.later_logs[1].floors, "floors.csv");
+  EXPECT_EQ(read.origin.onto, origin.onto);
+  EXPECT_EQ(read.origin.identity, origin.identity);
+}
+
+// A file that a program wrote which knew of version 1 alone.
+TEST(MapFileReader, UpgradesVersion1) {
+  const fs::path file = fs::path(MASKED_MAPPER_SOURCE_DIR) / "tests/map_file/version1.mmap";
+  EXPECT_EQ(Database(file, OpenMode::kRead).Number("PRAGMA user_version"), 1);
+  const SavedMap map = ReadMapFile(file);
+  EXPECT_EQ(map.result.trajectory.size(), 24U);
+  EXPECT_EQ(map.result.graph.nodes().size(), 3U);
+  ASSERT_EQ(map.result.drives.size(), 1U);
+  EXPECT_EQ(map.result.drives[0].log, map.origin.log);
+  EXPECT_EQ(map.result.drives[0].first_node, 0);
+  EXPECT_EQ(map.result.drives[0].motion_source, map.result.motion_source);
+  ASSERT_EQ(map.result.graph.floors().size(), 2U);
+  EXPECT_EQ(map.result.graph.floors()[0].label, "0");
+  EXPECT_FALSE(map.result.graph.floors()[0].label_given) << "may be its place";
+  EXPECT_EQ(map.result.graph.floors()[1].label, "up");
+  EXPECT_TRUE(map.result.graph.floors()[1].label_given);
+  // What it is upgraded to is written as what it is.
+  const TestFolder folder;
+  WriteMapFile(map.origin, map.result, folder / "new.mmap");
+  EXPECT_EQ(Database(folder / "new.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 2);
+  EXPECT_TRUE(SameMap(map.result, ReadMapFile(folder / "new.mmap").result));
+  // The version is part of what is believed: neither passes for the other.
+  for (const auto& [from, version] :
+       {std::make_pair(file, 2), std::make_pair(folder / "new.mmap", 1)}) {
+    fs::copy_file(from, folder / "other.mmap", fs::copy_options::overwrite_existing);
+    Database(folder / "other.mmap", OpenMode::kWrite)
+        .Run("PRAGMA user_version = " + std::to_string(version));
+    EXPECT_NE(Refusal(folder / "other.mmap").find("tables are not those"), std::string::npos);
+  }
+}
+
+TEST(MapFileReader, RefusesDrivesThatDoNotHoldTogether) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* change : {
+           "UPDATE drives SET first_pose = 1 WHERE id = 0",
+           "UPDATE drives SET first_node = 1 WHERE id = 0",
+           "UPDATE drives SET first_pose = 0 WHERE id = 1",
+           "UPDATE drives SET first_pose = 1 WHERE id = 1",
+           "UPDATE drives SET first_pose = 1 << 40 WHERE id = 1",
+           "UPDATE drives SET first_node = 99 WHERE id = 1",
+           "UPDATE drives SET stamp_offset = 9e999 WHERE id = 1",
+           "UPDATE drives SET motion_source = 'wings' WHERE id = 1",
+           "DELETE FROM drives WHERE id = 0",
+           "UPDATE floors SET label_given = 2 WHERE id = 0",
+           "UPDATE scans SET trajectory_index = 0",
+       }) {
+    const fs::path path = folder / (std::to_string(number++) + ".mmap");
+    WriteMapFile({}, MapOfTwoDrives(), path);
+    {
+      Database database(path, OpenMode::kWrite);
+      database.Run("PRAGMA foreign_keys = OFF");
+      database.Run(change);
+      database.Run("DELETE FROM content");
+      Seal(database);
+    }
+    EXPECT_NE(Refusal(path).find("damaged"), std::string::npos) << change;
+  }
+}
+
 // Rows that no damage makes, but a hand: the checksums are right, what they say is not.
 TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
   const TestFolder folder;

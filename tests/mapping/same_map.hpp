@@ -21,6 +21,7 @@ class MapBytes {
       AddNumber("floor", floor.elevation);
       AddNumber("floor", floor.elevation_sigma);
       AddNumber("floor", floor.elevation_measured);
+      AddNumber("floor", floor.label_given);
     }
     for (const Node& node : map.graph.nodes()) AddNode(node);
     for (const Edge& edge : map.graph.edges()) {
@@ -41,6 +42,14 @@ class MapBytes {
     for (const KeptScan& kept : map.kept_scans) {
       AddNumber("scan", kept.trajectory_index);
       AddScan(kept.scan);
+    }
+    for (const Drive& drive : map.drives) {
+      Add("drive", drive.log);
+      AddNumber("drive", drive.first_pose);
+      AddNumber("drive", drive.first_node);
+      AddNumber("drive", drive.stamp_offset_s);
+      AddNumber("drive", static_cast<int>(drive.motion_source));
+      Add("drive", drive.reason);
     }
     AddLog(map.log);
     AddNumber("motion source", static_cast<int>(map.motion_source));

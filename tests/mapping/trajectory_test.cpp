@@ -19,7 +19,8 @@ struct StraightDrive {
         Node node;
         node.T_odom_robot = pose;
         node.T_world_robot = pose;
-        graph.AddNode(node);
+        const NodeId id = graph.AddNode(node);
+        if (id > 0) graph.AddEdge({id - 1, id, {}, EdgeKind::kOdometry});
       }
       TrajectoryPose scan;
       scan.T_odom_robot = pose;

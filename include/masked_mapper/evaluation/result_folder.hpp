@@ -38,15 +38,29 @@ struct MappedGraph {
   std::vector<GraphEdge> edges;  ///< all of graph.g2o
 };
 
+/// One log's part of a map of several; scans and nodes of drives follow each other.
+struct MappedDrive {
+  std::size_t scans = 0;
+  std::size_t nodes = 0;
+  double stamp_offset = 0.0;  ///< s, was added to the log's stamps
+  std::vector<std::string> floors;
+};
+
 struct ResultFolder {
   std::vector<StampedPose> trajectory;                    ///< in order of stamps
   std::optional<MappedGraph> graph;                       ///< of nodes.tum and graph.g2o
   std::optional<std::vector<ValidatedClosure>> closures;  ///< of closures.csv, when `graph` is
   std::vector<MappedFloor> floors;                        ///< of summary.json
+  std::vector<MappedDrive> drives;                        ///< the same; of one log: none
 };
 
 /// trajectory.tum must be there; of the others, what is there is read. Throws InputError, which
 /// names file and line.
 ResultFolder ReadResultFolder(const std::string& folder);
+
+/// What a map of several logs holds of drive `number`, from 1: its scans, nodes, edges and closures
+/// with both ends in it, and its floors, with the stamps of its own log. Throws InputError when
+/// there is no such drive; `folder` is for the message.
+ResultFolder OneDrive(const std::string& folder, const ResultFolder& result, std::size_t number);
 
 }  // namespace masked_mapper

@@ -3,6 +3,7 @@
 //
 //   building.bt  building.pcd  building.ply  graph.g2o  trajectory.tum  nodes.tum  closures.csv
 //   summary.json  report.html  floors/<label>.{pcd,pgm,yaml,g2o}
+//   drives/<n>.tum, of a map of several logs
 #pragma once
 
 #include <filesystem>

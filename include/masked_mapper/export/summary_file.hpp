@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "masked_mapper/mapping/drives.hpp"
 #include "masked_mapper/mapping/mapping_result.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 
@@ -53,6 +54,7 @@ struct Summary {
   StageSeconds seconds;
   double peak_memory_mib = 0.0;
   std::vector<std::string> warnings;
+  std::vector<DriveFacts> drives;  ///< of a map of several logs; else none
 };
 
 /// `grids` by FloorId. Seconds are the result's, their total the

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "masked_mapper/mapping/mapping_result.hpp"
 #include "masked_mapper/mapping/options.hpp"
@@ -14,6 +15,15 @@ struct MapOrigin {
   std::string log;   ///< path as given
   std::string mask;  ///< expression as given
   Options options;   ///< as given; the number of threads is not kept
+
+  /// Of several logs: those after the first.
+  struct LaterLog {
+    std::string log;     ///< path as given
+    std::string floors;  ///< its file of floor labels; empty: none
+  };
+  std::vector<LaterLog> later_logs = {};
+  std::string onto = {};      ///< the map that the logs were to join, path as given; empty: none
+  std::string identity = {};  ///< of a map in the making: what tells whether its logs have changed
 };
 
 struct SavedMap {

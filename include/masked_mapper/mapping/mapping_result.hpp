@@ -57,13 +57,24 @@ struct StageSeconds {
   double total = 0.0;
 };
 
+/// One log's part of a map: scans, nodes and poses of a drive stand together (mapping/drives.hpp).
+struct Drive {
+  std::string log;             ///< path as given
+  std::size_t first_pose = 0;  ///< in MappingResult::trajectory
+  NodeId first_node = 0;
+  double stamp_offset_s = 0.0;  ///< was added to the log's stamps, which must not step back
+  MotionSource motion_source = MotionSource::kFused;  ///< the one that was used
+  std::string reason;  ///< of a drive that was to join others: why it did, or did not
+};
+
 struct MappingResult {
   PoseGraph graph;
-  std::vector<TrajectoryPose> trajectory;  ///< one per scan of the log, in order
+  std::vector<TrajectoryPose> trajectory;  ///< one per scan of the logs, in order
   std::vector<KeptScan> kept_scans;        ///< in order
   std::vector<ClosureAttempt> attempts;    ///< in order of offering
+  std::vector<Drive> drives;               ///< in order; of one log: one
   LogStatistics log;
-  MotionSource motion_source = MotionSource::kFused;  ///< the one that was used
+  MotionSource motion_source = MotionSource::kFused;  ///< that of the first drive
   StageSeconds seconds;
   std::vector<std::string> warnings;  ///< one line each, for people
 };

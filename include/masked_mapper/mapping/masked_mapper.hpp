@@ -2,21 +2,17 @@
 // The masked mapper: Algorithm 1 of the paper, one observation at a time.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "masked_mapper/loop_closure/validator.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
+#include "masked_mapper/mapping/loop_closer.hpp"
 #include "masked_mapper/mapping/mapping_result.hpp"
 #include "masked_mapper/mapping/options.hpp"
-#include "masked_mapper/mapping/submaps.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
-#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
-#include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
 
@@ -53,34 +49,18 @@ class MaskedMapper {
   /// The cab's walls ride along: scans against them err once, not with every turn in it.
   UncertainPose2 RideInCab(const UncertainPose2& motion) const;
   void CloseLoops(NodeId new_node);
-  std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
-  bool RefineMatch(ClosureAttempt& attempt);
-  void AddValidated(const std::vector<HypothesisId>& validated);
-  void Polish();
-  void CloseOpenRevisits();
-  bool CloseRevisit(NodeId a, NodeId b);
-  bool FitsTheMap(const ClosureAttempt& attempt) const;
-  Pose2 MapBetween(NodeId from, NodeId to) const;
-  std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
-  void EnterLate(std::size_t place, ClosureAttempt& attempt);
-  void Audit();
   void RecordScan(const LaserScan& scan, const FloorInterval& interval);
 
   Options options_;
   const FloorTimeline& floors_;
   MotionEstimator motion_;
   std::unique_ptr<Mask> mask_;
-  JointMatcher matcher_;
-  Submaps submaps_;
-  LoopValidator validator_;
-  PoseGraphOptimizer optimizer_;
   MappingResult result_;
+  LoopCloser closer_;  ///< works on result_
 
   std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered
   bool in_transit_ = false;
   bool on_stairs_ = false;  ///< the transit that runs, or the last
-  std::vector<std::size_t> attempt_of_hypothesis_;
-  std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
   double travelled_since_kept_m_ = 0.0;
   std::size_t remembered_scans_ = 0;  ///< by RememberScan
 };

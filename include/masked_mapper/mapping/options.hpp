@@ -14,6 +14,7 @@
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/octree.hpp"
+#include "masked_mapper/scan_matching/floor_search.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
@@ -54,6 +55,24 @@ struct FloorJoinOptions {
   double min_share = 0.6;  ///< of the places that have a neighbour
 };
 
+/// When drives of several logs are of one building (mapping/piece_search.hpp, drive_joining.hpp).
+struct DriveJoinOptions {
+  FloorSearchOptions search;
+  double stretch_m = 12.0;       ///< travel before and after a node that makes it a place
+  double place_spacing_m = 3.0;  ///< between places
+  int searched_places = 24;      ///< looked for everywhere; the others only where those say
+  double min_score = 0.7;        ///< 0-1, of a place that fits
+  double agree_m = 1.0;          ///< between a place and where all of them together put it
+  int min_places = 4;            ///< that fit and agree
+  double min_share = 0.4;        ///< of the places that lie within the older map
+  double min_spread_m = 8.0;     ///< between the two places farthest apart
+  double clear_lead = 0.05;      ///< of score, by which a place speaks against another way to join
+  int places_needed = 2;   ///< stands for the validator's: where the drive lies is known already
+  double reach_m = 4.0;    ///< from a node to those that it is offered to
+  double sigma_m = 0.5;    ///< of where the places put it
+  double sigma_deg = 2.0;  ///< and of the heading
+};
+
 struct Options {
   LogOptions log;
   MotionOptions motion;
@@ -65,6 +84,7 @@ struct Options {
   SubmapOptions submaps;
   AmbiguityOptions ambiguity;
   FloorJoinOptions floor_joins;
+  DriveJoinOptions drive_joins;
   PolishOptions polish;
   ValidatorOptions validator;
   UpdateOptions optimizer;

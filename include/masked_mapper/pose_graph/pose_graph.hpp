@@ -21,6 +21,7 @@ struct Floor {
   double elevation = 0.0;           ///< m above the first floor of the log
   double elevation_sigma = 0.0;     ///< m
   bool elevation_measured = false;  ///< false: a typical storey height was assumed
+  bool label_given = false;         ///< by the log or by hand; false: its place among the others
 };
 
 struct Node {

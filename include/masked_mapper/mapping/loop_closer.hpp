@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From candidates to closures, as in the body of Algorithm 1: joint scan matching, refinement
+// against submaps, votes, optimisation; and what is done once all are in: late closures, the last
+// audit. Serves a drive that is being mapped and drives that are being joined alike.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/validator.hpp"
+#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/mapping/submaps.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+
+namespace masked_mapper {
+
+class LoopCloser {
+ public:
+  /// What a node is matched against, in its frame.
+  using ReferencePoints = std::function<ScanPoints::ConstPtr(NodeId)>;
+
+  /// `map` outlives this; closures that are in it already stay known by their attempts.
+  /// `options.motion.source` is settled. Without `reference`, nodes are matched by their scans.
+  LoopCloser(const Options& options, MappingResult& map, ReferencePoints reference = {});
+
+  /// Offers a node to its candidates. What is validated by it becomes edges, and the graph is
+  /// solved. Returns how many.
+  std::size_t Close(NodeId new_node, const std::vector<Candidate>& candidates);
+
+  /// Writes the votes of so far into the attempts.
+  void NoteVotes();
+
+  /// Ends the map's graph: late closures enter, those that disagree go. Only of a map that hangs
+  /// together where late closures are to be believed.
+  void Finish();
+
+  /// The state, for a checkpoint (mapping/state_archive.hpp); after the map's attempts.
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(validator_, optimizer_, attempt_of_hypothesis_, attempt_of_edge_);
+    if constexpr (Archive::kReads) {
+      if (!HoldsTogether()) archive.Refuse("closures that do not hold together");
+    }
+  }
+
+ private:
+  std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  bool RefineMatch(ClosureAttempt& attempt);
+  void AddValidated(const std::vector<HypothesisId>& validated);
+  void Polish();
+  void CloseOpenRevisits();
+  bool CloseRevisit(NodeId a, NodeId b);
+  bool FitsTheMap(const ClosureAttempt& attempt) const;
+  Pose2 MapBetween(NodeId from, NodeId to) const;
+  std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
+  void EnterLate(std::size_t place, ClosureAttempt& attempt);
+  void Audit();
+  bool HoldsTogether() const;
+
+  const Options& options_;
+  MappingResult& map_;
+  ReferencePoints reference_;
+  JointMatcher matcher_;
+  Submaps submaps_;
+  LoopValidator validator_;
+  PoseGraphOptimizer optimizer_;
+  std::vector<std::size_t> attempt_of_hypothesis_;
+  std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/loop_closer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mapping/ring_logs.hpp"
+
+namespace masked_mapper {
+namespace {
+
+std::size_t CountClosures(const MappingResult& map) {
+  return static_cast<std::size_t>(
+      std::count_if(map.graph.edges().begin(), map.graph.edges().end(),
+                    [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; }));
+}
+
+// Closures that are in a finished map are known by their attempts: one that is wrong is audited out
+// by name.
+TEST(LoopCloser, AuditsWhatWasThereBefore) {
+  MappingResult map = MapOf(First(), "closer.log");
+  const std::size_t closures = CountClosures(map);
+  ASSERT_GT(closures, 1U);
+  ClosureAttempt wrong;
+  wrong.a = static_cast<NodeId>(map.graph.nodes().size() - 1);
+  wrong.b = 3;
+  wrong.T_a_b.mean = {7.0, -3.0, 1.0};
+  wrong.T_a_b.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
+  wrong.state = ClosureState::kValidated;
+  map.attempts.push_back(wrong);
+  map.graph.AddEdge({wrong.a, wrong.b, wrong.T_a_b, EdgeKind::kClosure});
+  Options options;
+  options.motion.source = MotionSource::kFused;
+  LoopCloser closer(options, map);
+  closer.Finish();
+  EXPECT_GE(CountClosures(map), closures);
+  EXPECT_EQ(map.attempts.back().state, ClosureState::kAuditedOut);
+  EXPECT_EQ(map.attempts.back().reason, "disagrees with the optimised map");
+}
+
+TEST(LoopCloser, MatchesAgainstTheReferenceThatItIsGiven) {
+  MappingResult map = MapOf(First(), "closer.log");
+  Options options;
+  options.motion.source = MotionSource::kFused;
+  std::vector<NodeId> asked;
+  LoopCloser closer(options, map, [&](NodeId node) {
+    asked.push_back(node);
+    return map.graph.nodes()[static_cast<std::size_t>(node)].points_in_robot;
+  });
+  std::vector<NodeId> scan_nodes;
+  for (std::size_t i = 0; i < map.graph.nodes().size(); ++i) {
+    if (map.graph.nodes()[i].HasScan()) scan_nodes.push_back(static_cast<NodeId>(i));
+  }
+  const std::size_t attempts = map.attempts.size();
+  Candidate candidate;
+  candidate.node = scan_nodes.front();
+  candidate.T_new_node.covariance.diagonal() << 0.01, 0.01, 0.001;
+  closer.Close(scan_nodes.back(), {candidate});
+  EXPECT_EQ(asked, std::vector<NodeId>{scan_nodes.front()});
+  ASSERT_EQ(map.attempts.size(), attempts + 1);
+  EXPECT_EQ(map.attempts.back().a, scan_nodes.back());
+}
+
+}  // namespace
+}  // namespace masked_mapper
