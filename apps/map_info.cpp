@@ -59,6 +59,7 @@ MapFacts FactsOf(const std::string& out_or_map) {
   const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   if (!trajectory.empty()) facts.duration_s = trajectory.back().stamp - trajectory.front().stamp;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    if (DriveOfPose(result, i - 1) != DriveOfPose(result, i)) continue;
     facts.path_length_m += Distance(trajectory[i - 1].T_world_robot, trajectory[i].T_world_robot);
   }
   facts.kept_scans = result.kept_scans.size();

@@ -232,12 +232,21 @@ Json ScansJson(const MappingResult& result, const Pose2& T_world_odom, double ma
   return json;
 }
 
-// The poses to draw: where floors change, and otherwise after `step` metres or some turning.
-std::vector<std::size_t> DrawnPoses(const std::vector<TrajectoryPose>& trajectory, double step) {
+// Whether a scan is the first of a drive after the first.
+bool BeginsDrive(const MappingResult& result, std::size_t pose) {
+  return std::any_of(result.drives.begin(), result.drives.end(),
+                     [&](const Drive& drive) { return pose > 0 && drive.first_pose == pose; });
+}
+
+// The poses to draw: where floors change or drives begin and end, and otherwise after `step` metres
+// or some turning.
+std::vector<std::size_t> DrawnPoses(const MappingResult& result, double step) {
+  const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   std::vector<std::size_t> drawn;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const TrajectoryPose& pose = trajectory[i];
-    if (!drawn.empty() && i + 1 < trajectory.size()) {
+    const bool is_end = BeginsDrive(result, i) || BeginsDrive(result, i + 1);
+    if (!drawn.empty() && i + 1 < trajectory.size() && !is_end) {
       const TrajectoryPose& last = trajectory[drawn.back()];
       const bool same_place = pose.floor == last.floor && pose.in_transit == last.in_transit;
       if (same_place && Distance(last.T_odom_robot, pose.T_odom_robot) < step &&
@@ -250,19 +259,22 @@ std::vector<std::size_t> DrawnPoses(const std::vector<TrajectoryPose>& trajector
   return drawn;
 }
 
-Json TrajectoryJson(const std::vector<TrajectoryPose>& trajectory, const Pose2& T_world_odom) {
+Json TrajectoryJson(const MappingResult& result, const Pose2& T_world_odom) {
+  const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   double step = 0.1;
-  std::vector<std::size_t> drawn = DrawnPoses(trajectory, step);
+  std::vector<std::size_t> drawn = DrawnPoses(result, step);
   while (drawn.size() > kMaxTrajectoryPoses && step < 10.0) {
     step *= 1.5;
-    drawn = DrawnPoses(trajectory, step);
+    drawn = DrawnPoses(result, step);
   }
   PoseColumns poses;
   std::vector<double> stamps;
   std::vector<std::uint16_t> floors;
   std::vector<std::uint8_t> in_transit;
+  std::vector<std::size_t> breaks;  // no way leads here from the one before
   for (const std::size_t i : drawn) {
     const TrajectoryPose& pose = trajectory[i];
+    if (BeginsDrive(result, i)) breaks.push_back(stamps.size());
     stamps.push_back(pose.stamp);
     floors.push_back(static_cast<std::uint16_t>(pose.floor));
     in_transit.push_back(pose.in_transit ? 1 : 0);
@@ -270,6 +282,7 @@ Json TrajectoryJson(const std::vector<TrajectoryPose>& trajectory, const Pose2& 
   }
   double length = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    if (BeginsDrive(result, i)) continue;
     length += Distance(trajectory[i - 1].T_world_robot, trajectory[i].T_world_robot);
   }
   Json json = {{"count", drawn.size()},
@@ -277,6 +290,7 @@ Json TrajectoryJson(const std::vector<TrajectoryPose>& trajectory, const Pose2& 
                {"stamp_f64", Base64(stamps)},
                {"floor_u16", Base64(floors)},
                {"in_transit_u8", Base64(in_transit)}};
+  if (!breaks.empty()) json["breaks"] = breaks;
   poses.WriteTo(json);
   return json;
 }
@@ -401,7 +415,7 @@ std::string ReportData(const MappingResult& result, const std::vector<OccupancyG
   const Json json = {{"version", 1},
                      {"floors", FloorsJson(result.graph, grids)},
                      {"scans", ScansJson(result, T_world_odom, max_range_m)},
-                     {"trajectory", TrajectoryJson(result.trajectory, T_world_odom)},
+                     {"trajectory", TrajectoryJson(result, T_world_odom)},
                      {"nodes", NodesJson(nodes, T_world_odom)},
                      {"edges", EdgesJson(result.graph.edges())},
                      {"attempts", AttemptsJson(result.attempts, nodes)}};

@@ -58,6 +58,7 @@ TEST_F(SeveralLogs, AreJoinedAndSaidToBe) {
   EXPECT_GT(second.at("stamp_offset_s").get<double>(), 0.0);
   EXPECT_EQ(summary.at("floors").size(), 1U);
   EXPECT_TRUE(fs::exists(folder_ / "out/drives/2.tum"));
+  EXPECT_TRUE(Contains(ReadText(folder_ / "out/report.html"), "\"breaks\":["));
   ASSERT_EQ(RunProgram(Map("two", {"--threads", "2"})).code, 0);
   ExpectSame("out", "two");
   // What is written again from the saved map is the same, and `info` tells of both.

@@ -57,6 +57,7 @@ function readTrajectory(table) {
   return {
     count: table.count, length: table.length_m, stamp: column(table, 'stamp_f64'), floor, inTransit,
     height: heights(floor, inTransit), ...poses(table),
+    breaks: new Set(table.breaks ?? []),
   };
 }
 

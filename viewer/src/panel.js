@@ -228,5 +228,9 @@ export function runPage(page, model) {
         ['Scans', count(counts.scans)], ['Way driven', distanceText(model.trajectory.length)],
         ['Nodes', `${count(counts.nodes)} (${count(counts.scan_nodes)} with a scan)`],
       ])),
+      summary.drives ? part('Drives', rows(summary.drives.map((drive, index) => [
+        `${index + 1}: ${drive.log}`,
+        drive.joined ? `${count(drive.closures_to_others)} closures to others` : `a piece of its own: ${drive.reason}`,
+      ]))) : '',
       options.length ? part('Options used', search, optionTable) : '');
 }

@@ -389,6 +389,7 @@ export class MapScene {
       fraction: trajectory.height.fraction[i],
     });
     for (let i = 0; i + 1 < trajectory.count; ++i) {
+      if (trajectory.breaks.has(i + 1)) continue;  // another drive begins
       const stays = !trajectory.inTransit[i] && !trajectory.inTransit[i + 1] &&
           trajectory.floor[i] === trajectory.floor[i + 1];
       add('trajectory', stays ? trajectory.floor[i] : -1, [sample(i), sample(i + 1)]);
