@@ -136,5 +136,26 @@ TEST(Tour, ADeadEndIsDrivenThereAndBack) {
   EXPECT_EQ(tour.legs[0].way_points, (std::vector<std::size_t>{0, 1, 0}));
 }
 
+TEST(Tour, AnotherOneStartsElsewhereOnAnotherFloor) {
+  for (const std::string& name : BuildingNames()) {
+    Building building = *NamedBuilding(name, 1);
+    const UsualTour usual = OtherTour(building, 1, 1, {});
+    EXPECT_EQ(usual.start_floor, building.usual_tour.start_floor);
+    EXPECT_EQ(usual.visits, building.usual_tour.visits);
+    for (const std::uint64_t number : {2, 3, 4}) {
+      const UsualTour other = OtherTour(building, 1, number, {});
+      EXPECT_TRUE(building.floors.size() == 1 || other.start_floor != usual.start_floor) << name;
+      const auto last = static_cast<std::size_t>(building.floors.size() - 1);
+      EXPECT_EQ(OtherTour(building, 1, number, {last}).start_floor, last);
+      building.usual_tour = other;
+      CheckBuilding(building, 0.4);
+      CheckedWays(building, PlanTour(building, {number, 0.0, {}}));
+      building.usual_tour = usual;
+    }
+    EXPECT_EQ(OtherTour(building, 1, 2, {99}).start_floor, usual.start_floor)
+        << "no such floor, which PlanTour says";
+  }
+}
+
 }  // namespace
 }  // namespace masked_mapper
