@@ -2,6 +2,8 @@
 // Drives through one building as logs of their own, mapped each by itself.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -31,9 +33,12 @@ struct Cut {
   }
 };
 
+/// In a file of this test's own: tests run side by side.
 inline MappingResult MapOf(const Cut& cut, const std::string& name,
                            const std::vector<std::pair<std::size_t, std::string>>& labels = {}) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const std::string file = std::string(test->test_suite_name()) + "." + test->name() + "." + name;
+  const std::string path = (std::filesystem::path(testing::TempDir()) / file).string();
   LogWriter writer(path);
   for (std::size_t i = 0; i < cut.scans.size(); ++i) {
     for (const auto& [scan, label] : labels) {
