@@ -152,12 +152,15 @@ void LoopCloser::Polish() {
   const double most_rad = DegToRad(options_.polish.most_deg);
   for (const std::size_t i : open) {
     ClosureAttempt& attempt = map_.attempts[i];
-    if (!FitsTheMap(attempt)) continue;
+    // Drives that do not hang together may have been tried, too: what they have in common by chance
+    // says nothing, and their floors are not one.
+    if (!CanBeOne(attempt) || !FitsTheMap(attempt)) continue;
+    const ScanPoints::ConstPtr points_at_a = submaps_.PointsAt(attempt.a);
+    if (!points_at_a) continue;
     UncertainPose2 guess;
     guess.mean = MapBetween(attempt.b, attempt.a);
     guess.covariance.diagonal() << most_m * most_m, most_m * most_m, most_rad * most_rad;
-    const std::optional<SubmapMatch> again =
-        submaps_.Refine(attempt.b, *submaps_.PointsAt(attempt.a), guess);
+    const std::optional<SubmapMatch> again = submaps_.Refine(attempt.b, *points_at_a, guess);
     if (!again) continue;
     ClosureAttempt late = attempt;
     late.T_a_b = Inverse(again->T_node_robot);
@@ -166,6 +169,12 @@ void LoopCloser::Polish() {
     EnterLate(i, late);
     attempt = late;
   }
+}
+
+bool LoopCloser::CanBeOne(const ClosureAttempt& attempt) const {
+  const std::vector<Node>& nodes = map_.graph.nodes();
+  return attempt.a != attempt.b && nodes[static_cast<std::size_t>(attempt.a)].floor ==
+                                       nodes[static_cast<std::size_t>(attempt.b)].floor;
 }
 
 bool LoopCloser::FitsTheMap(const ClosureAttempt& attempt) const {
@@ -277,9 +286,13 @@ void LoopCloser::Audit() {
       AuditClosures(options_.audit, options_.optimizer.solver, map_.graph);
   if (wrong.empty()) return;
   for (auto edge = wrong.rbegin(); edge != wrong.rend(); ++edge) {
-    ClosureAttempt& attempt = map_.attempts[attempt_of_edge_.at(*edge)];
-    attempt.state = ClosureState::kAuditedOut;
-    attempt.reason = "disagrees with the optimised map";
+    // A saved map may hold closures that no attempt tells of.
+    const auto known = attempt_of_edge_.find(*edge);
+    if (known != attempt_of_edge_.end()) {
+      ClosureAttempt& attempt = map_.attempts[known->second];
+      attempt.state = ClosureState::kAuditedOut;
+      attempt.reason = "disagrees with the optimised map";
+    }
     map_.graph.RemoveEdge(*edge);
   }
   Optimize(options_.optimizer.solver, map_.graph);

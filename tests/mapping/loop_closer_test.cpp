@@ -39,6 +39,38 @@ TEST(LoopCloser, AuditsWhatWasThereBefore) {
   EXPECT_EQ(map.attempts.back().reason, "disagrees with the optimised map");
 }
 
+// Of a saved map nothing is sure: closures without an attempt, attempts that no closure may come
+// of.
+TEST(LoopCloser, TakesWhatDoesNotHoldTogether) {
+  MappingResult map = MapOf(First(), "closer.log");
+  const auto last = static_cast<NodeId>(map.graph.nodes().size() - 1);
+  UncertainPose2 wrong;
+  wrong.mean = {7.0, -3.0, 1.0};
+  wrong.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
+  const EdgeId edge = map.graph.AddEdge({last, 3, wrong, EdgeKind::kClosure});
+  ClosureAttempt open;
+  open.a = open.b = last;
+  open.T_a_b.covariance = wrong.covariance;
+  open.state = ClosureState::kHypothesis;
+  open.reason = "too few votes";
+  map.attempts.push_back(open);
+  // On another floor, of a piece that has nothing to do with the first.
+  const FloorId floor = map.graph.AddFloor({"other"});
+  Node elsewhere = map.graph.nodes()[3];
+  elsewhere.floor = floor;
+  open.a = map.graph.AddNode(elsewhere);
+  open.b = 3;
+  map.attempts.push_back(open);
+  Options options;
+  options.motion.source = MotionSource::kFused;
+  LoopCloser(options, map).Finish();
+  EXPECT_EQ(map.attempts.back().state, ClosureState::kHypothesis);
+  const std::vector<Edge>& edges = map.graph.edges();
+  EXPECT_TRUE(std::none_of(edges.begin(), edges.end(), [&](const Edge& other) {
+    return other.from == last && other.to == 3;
+  })) << edge;
+}
+
 TEST(LoopCloser, MatchesAgainstTheReferenceThatItIsGiven) {
   MappingResult map = MapOf(First(), "closer.log");
   Options options;

@@ -56,6 +56,7 @@ class LoopCloser {
   void Polish();
   void CloseOpenRevisits();
   bool CloseRevisit(NodeId a, NodeId b);
+  bool CanBeOne(const ClosureAttempt& attempt) const;
   bool FitsTheMap(const ClosureAttempt& attempt) const;
   Pose2 MapBetween(NodeId from, NodeId to) const;
   std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
