@@ -204,7 +204,7 @@ class PieceFinder {
       const IndexRange range = NodesOfDrive(map_, drive);
       for (std::size_t i = range.begin; i < range.end; ++i) {
         const Node& node = map_.graph.nodes()[i];
-        if (!node.HasScan()) continue;
+        if (!node.HasScan() || node.T_world_robot.Translation().norm() > kFarthest) continue;
         auto& taken = nodes[node.floor];
         const bool is_far = std::all_of(taken.begin(), taken.end(), [&](NodeId other) {
           return Distance(At(other).T_world_robot, node.T_world_robot) > joins_.place_spacing_m;
