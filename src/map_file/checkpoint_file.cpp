@@ -32,13 +32,16 @@ constexpr std::int64_t kCheckpointVersion = 2;
 /// A checkpoint may take this share of the time to the next one.
 constexpr double kShare = 0.03;
 
+constexpr const char* kCheckpointEnding = ".mmck";
+constexpr const char* kFinishedEnding = ".mmap";
+
 // Of the first log, and of later ones.
 std::string FileName(std::size_t drive) {
-  return drive == 0 ? "checkpoint.mmck" : "checkpoint-" + std::to_string(drive + 1) + ".mmck";
+  return "checkpoint" + (drive == 0 ? "" : "-" + std::to_string(drive + 1)) + kCheckpointEnding;
 }
 
 fs::path FinishedFile(const fs::path& folder, std::size_t drive) {
-  return folder / ("drive-" + std::to_string(drive + 1) + ".mmap");
+  return folder / ("drive-" + std::to_string(drive + 1) + kFinishedEnding);
 }
 
 // A file that has grown, was cut or replaced; read at both ends alone, since logs are large.
@@ -72,7 +75,12 @@ std::vector<std::pair<std::string, std::string>> Identities(const MapOrigin& ori
   for (const MapOrigin::LaterLog& later : origin.later_logs) {
     lines.emplace_back(later.log, LogIdentity(later.log, later.floors));
   }
-  if (!origin.onto.empty()) lines.emplace_back(origin.onto, IdentityOf(origin.onto));
+  if (!origin.onto.empty()) {
+    std::error_code missing;
+    fs::path file = origin.onto;
+    if (fs::is_directory(file, missing)) file /= "building.mmap";
+    lines.emplace_back(origin.onto, IdentityOf(file.string()));
+  }
   return lines;
 }
 
@@ -292,8 +300,13 @@ CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, dou
 CheckpointFile::~CheckpointFile() = default;
 
 bool CheckpointFile::Exists(const fs::path& out) {
-  const fs::path folder = UnfinishedFolder(out);
-  return fs::exists(folder / FileName(0)) || fs::exists(FinishedFile(folder, 0));
+  // Of any drive: a short one may be done without a trace before the next is kept.
+  std::error_code missing;
+  for (const fs::directory_entry& entry : fs::directory_iterator(UnfinishedFolder(out), missing)) {
+    const fs::path ending = entry.path().extension();
+    if (ending == kCheckpointEnding || ending == kFinishedEnding) return true;
+  }
+  return false;
 }
 
 std::optional<Checkpoint> CheckpointFile::Load() {

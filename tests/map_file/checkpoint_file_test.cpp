@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 #include <stdexcept>
 
@@ -188,6 +189,19 @@ TEST_F(CheckpointFileTest, FinishedDrivesAreKeptUntilAllAreDone) {
   EXPECT_NE(refusal(origin_).find("has changed"), std::string::npos) << refusal(origin_);
   finished.Remove();
   EXPECT_FALSE(fs::exists(folder_ / ".out.unfinished"));
+  // Of a first drive that was too short to be kept there is no trace.
+  FinishedDrives(folder_ / "out", origin_, false).Save(1, whole);
+  EXPECT_TRUE(CheckpointFile::Exists(folder_ / "out"));
+  finished.Remove();
+  // The map that is grown is a folder, or the file in it.
+  fs::create_directory(folder_ / "old");
+  std::ofstream(folder_ / "old/building.mmap") << "one";
+  origin_.onto = (folder_ / "old").string();
+  FinishedDrives(folder_ / "out", origin_, false).Save(0, whole);
+  EXPECT_EQ(refusal(origin_), "");
+  std::ofstream(folder_ / "old/building.mmap") << "another";
+  EXPECT_NE(refusal(origin_).find("has changed"), std::string::npos) << refusal(origin_);
+  finished.Remove();
 }
 
 }  // namespace
