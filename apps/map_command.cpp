@@ -123,16 +123,14 @@ MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Ke
                                   keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
     if (is_alone || !is_worth_keeping || arguments.checkpoint_s == 0.0) continue;
     keeping.checkpoints.reset();
-    keeping.finished.Save(keeping.drive, maps.back());
+    try {
+      keeping.finished.Save(keeping.drive, maps.back());
+    } catch (const std::runtime_error& error) {
+      // As with checkpoints: a full disk must not end what needs none of it.
+      progress.Warn(std::string(error.what()) + "; going on without keeping the drive");
+    }
   }
-  const std::size_t said = [&] {
-    std::size_t count = 0;
-    for (const MappingResult& map : maps) count += map.warnings.size();
-    return count;
-  }();
-  MappingResult result = JoinDrives(std::move(maps), origin.options, progress);
-  for (std::size_t i = said; i < result.warnings.size(); ++i) progress.Warn(result.warnings[i]);
-  return result;
+  return JoinDrives(std::move(maps), origin.options, progress);
 }
 
 /// Maps and writes all of OUT.
@@ -222,8 +220,9 @@ int RunMap(const MapArguments& arguments) {
                      " is there: --resume goes on with it, --force starts afresh");
   }
 
-  // What an earlier run of several logs left must not be taken for this one's.
-  if (!arguments.resume && keeping.drives > 1) keeping.finished.Remove();
+  // What an earlier run left of finished drives must not be taken for this one's.
+  const bool keeps_drives = keeping.drives > 1 || !origin.onto.empty();
+  if (!arguments.resume && keeps_drives) keeping.finished.Remove();
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
   Summary summary;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "masked_mapper/geometry/mahalanobis.hpp"
 #include "masked_mapper/mapping/drives.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/loop_closer.hpp"
 #include "masked_mapper/mapping/piece_search.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
@@ -27,6 +29,7 @@ namespace masked_mapper {
 namespace {
 
 constexpr double kGapBetweenPieces = 5.0;  // m
+constexpr const char* kStaysApart = ": stays a piece of its own, beside the others: ";
 
 void AddStatistics(const LogStatistics& more, LogStatistics& log) {
   log.lines += more.lines;
@@ -140,12 +143,12 @@ class DriveJoiner {
       char text[200];
       std::snprintf(text, sizeof text, ": its stamps are shifted by %.0f s, to follow the others",
                     offset);
-      map_.warnings.push_back(map_.drives.back().log + text);
+      said_.push_back(map_.drives.back().log + text);
     }
   }
 
   /// Each piece is held against those before it, and those that it joins against the rest again.
-  void Join() {
+  void Join(ProgressSink& progress) {
     options_.validator.places_needed = options_.drive_joins.places_needed;
     options_.motion.source = MotionSource::kFused;
     for (const Drive& drive : map_.drives) {
@@ -153,10 +156,17 @@ class DriveJoiner {
         options_.motion.source = MotionSource::kOdometry;
       }
     }
+    ForgetPieces();
+    PartFloors();
     std::size_t newer = 1;
     while (newer < CountPieces()) {
       bool joined = false;
-      for (std::size_t older = 0; older < newer && !joined; ++older) joined = TryJoin(older, newer);
+      for (std::size_t older = 0; older < newer && !joined; ++older) {
+        // Also lets an interrupt through.
+        const auto pieces = static_cast<double>(CountPieces());
+        progress.Progress(static_cast<double>(newer - 1) / pieces, 0);
+        joined = TryJoin(older, newer);
+      }
       newer = joined ? 1 : newer + 1;
     }
     NameFloors();
@@ -164,7 +174,13 @@ class DriveJoiner {
     BendTrajectory(map_.graph, map_.trajectory);
   }
 
-  MappingResult Take() { return std::move(map_); }
+  /// What people should know of the joining.
+  const std::vector<std::string>& said() const { return said_; }
+
+  MappingResult Take() {
+    map_.warnings.insert(map_.warnings.end(), said_.begin(), said_.end());
+    return std::move(map_);
+  }
 
  private:
   // Whole seconds that keep stamps from stepping back.
@@ -190,6 +206,64 @@ class DriveJoiner {
     return drives;
   }
 
+  // What a map that is grown says of its pieces is said anew.
+  void ForgetPieces() {
+    std::vector<std::string>& warnings = map_.warnings;
+    const auto is_stale = [&](const std::string& warning) {
+      return std::any_of(map_.drives.begin(), map_.drives.end(), [&](const Drive& drive) {
+        return warning.compare(0, drive.log.size() + std::strlen(kStaysApart),
+                               drive.log + kStaysApart) == 0;
+      });
+    };
+    warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_stale), warnings.end());
+  }
+
+  // Every piece on floors of its own, called as its logs call them. In a map that was mended by
+  // hand two pieces may be on one floor: closures were forbidden, or are still to be added.
+  void PartFloors() {
+    std::vector<Floor> floors = map_.graph.floors();
+    std::vector<bool> is_owned(floors.size(), false);
+    std::vector<FloorId> floor_of_node(map_.graph.nodes().size());
+    for (std::size_t piece = 0; piece < CountPieces(); ++piece) {
+      const std::vector<std::size_t> drives = DrivesOf(piece);
+      std::map<FloorId, FloorId> becomes;
+      for (const FloorId floor : FloorsOf(drives)) {
+        becomes[floor] = floor;
+        if (is_owned[static_cast<std::size_t>(floor)]) {
+          becomes[floor] = static_cast<FloorId>(floors.size());
+          floors.push_back(map_.graph.floors()[static_cast<std::size_t>(floor)]);
+        } else {
+          is_owned[static_cast<std::size_t>(floor)] = true;
+        }
+        Floor& own = floors[static_cast<std::size_t>(becomes[floor])];
+        if (own.label_given) own.label = WithoutSuffix(own.label, SuffixOf(piece, drives));
+      }
+      for (const std::size_t drive : drives) {
+        const IndexRange nodes = NodesOfDrive(map_, drive);
+        for (std::size_t i = nodes.begin; i < nodes.end; ++i) {
+          floor_of_node[i] = becomes.at(map_.graph.nodes()[i].floor);
+        }
+        const IndexRange poses = PosesOfDrive(map_, drive);
+        for (std::size_t i = poses.begin; i < poses.end; ++i) {
+          map_.trajectory[i].floor = becomes.at(map_.trajectory[i].floor);
+        }
+      }
+    }
+    PoseGraph graph;
+    for (Floor& floor : floors) graph.AddFloor(std::move(floor));
+    for (std::size_t i = 0; i < floor_of_node.size(); ++i) {
+      Node node = map_.graph.nodes()[i];
+      node.floor = floor_of_node[i];
+      graph.AddNode(std::move(node));
+    }
+    for (const Edge& edge : map_.graph.edges()) graph.AddEdge(edge);
+    map_.graph = std::move(graph);
+  }
+
+  static std::string SuffixOf(std::size_t piece, const std::vector<std::size_t>& drives) {
+    return piece == 0 ? "" : ".drive" + std::to_string(drives.front() + 1);
+  }
+
   // The parts of the map that joining changes.
   struct Before {
     PoseGraph graph;
@@ -202,18 +276,22 @@ class DriveJoiner {
     const std::vector<std::size_t> newer = DrivesOf(newer_piece);
     // A pair that was looked at before is looked at again only when one of them has grown.
     if (!tried_.emplace(std::make_pair(older, newer)).second) return false;
+    std::string& reason = map_.drives[newer.front()].reason;
+    if (AreForbidden(older, newer)) {
+      reason = "its closures were forbidden by hand";
+      return false;
+    }
     PieceSearchResult found;
     {
       const StageTimer timer(map_.seconds.matching);
       found = FindPiece(map_, older, newer, options_);
     }
-    std::string& reason = map_.drives[newer.front()].reason;
     if (!found.placement) {
       if (older_piece == 0) reason = found.reason;
       return false;
     }
     Before before{map_.graph, map_.trajectory, map_.attempts};
-    Lay(*found.placement, newer);
+    Lay(*found.placement, older, newer);
     const std::size_t offered_from = map_.attempts.size();
     LoopCloser closer(options_, map_, [this](NodeId node) { return SurroundingsOf(node); });
     std::size_t closures = 0;
@@ -236,7 +314,9 @@ class DriveJoiner {
     if (!joined) {
       const auto first_new = map_.attempts.begin() + static_cast<std::ptrdiff_t>(offered_from);
       for (auto attempt = first_new; attempt != map_.attempts.end(); ++attempt) {
-        if (attempt->state == ClosureState::kValidated) attempt->state = ClosureState::kAuditedOut;
+        if (attempt->state != ClosureState::kValidated) continue;
+        attempt->state = ClosureState::kAuditedOut;
+        attempt->reason = "too few others tie the drives";
       }
       before.attempts.insert(before.attempts.end(), first_new, map_.attempts.end());
       map_.graph = std::move(before.graph);
@@ -249,6 +329,20 @@ class DriveJoiner {
     BendTrajectory(map_.graph, map_.trajectory);
     map_.drives[newer.front()].reason = found.reason;
     return true;
+  }
+
+  // Whether somebody took closures between these drives away, and so the drives apart.
+  bool AreForbidden(const std::vector<std::size_t>& older,
+                    const std::vector<std::size_t>& newer) const {
+    const auto is_of = [&](const std::vector<std::size_t>& drives, NodeId node) {
+      return std::count(drives.begin(), drives.end(), DriveOfNode(map_, node)) > 0;
+    };
+    return std::any_of(map_.attempts.begin(), map_.attempts.end(),
+                       [&](const ClosureAttempt& attempt) {
+                         return attempt.reason == kForbiddenByHand &&
+                                ((is_of(older, attempt.a) && is_of(newer, attempt.b)) ||
+                                 (is_of(older, attempt.b) && is_of(newer, attempt.a)));
+                       });
   }
 
   // What an older node is matched against: drives go opposite ways, and a scanner looks ahead.
@@ -269,7 +363,8 @@ class DriveJoiner {
 
   // Moves the newer piece into the older one's frame, and its floors that were met again onto the
   // older ones.
-  void Lay(const PiecePlacement& placement, const std::vector<std::size_t>& newer) {
+  void Lay(const PiecePlacement& placement, const std::vector<std::size_t>& older,
+           const std::vector<std::size_t>& newer) {
     Move(newer, placement.T_older_newer);
     std::vector<Floor> old_floors = map_.graph.floors();
     double shift = 0.0;
@@ -281,14 +376,16 @@ class DriveJoiner {
     for (const FloorId floor : FloorsOf(newer)) {
       old_floors[static_cast<std::size_t>(floor)].elevation += shift;
     }
+    const std::map<FloorId, FloorId> older_floor_of =
+        WithFloorsCalledAlike(placement.older_floor_of, older, newer);
     std::vector<Floor> floors;
     std::vector<FloorId> becomes(old_floors.size());
     for (std::size_t i = 0; i < old_floors.size(); ++i) {
-      if (placement.older_floor_of.count(static_cast<FloorId>(i)) != 0) continue;
+      if (older_floor_of.count(static_cast<FloorId>(i)) != 0) continue;
       becomes[i] = static_cast<FloorId>(floors.size());
       floors.push_back(old_floors[i]);
     }
-    for (const auto& [from, to] : placement.older_floor_of) {
+    for (const auto& [from, to] : older_floor_of) {
       const Floor& met = old_floors[static_cast<std::size_t>(from)];
       becomes[static_cast<std::size_t>(from)] = becomes[static_cast<std::size_t>(to)];
       Floor& known = floors[static_cast<std::size_t>(becomes[static_cast<std::size_t>(to)])];
@@ -298,6 +395,22 @@ class DriveJoiner {
       }
     }
     Refloor(becomes, floors, map_);
+  }
+
+  // Floors that were seen too little to be met again are one by the labels that were given to both.
+  std::map<FloorId, FloorId> WithFloorsCalledAlike(std::map<FloorId, FloorId> older_floor_of,
+                                                   const std::vector<std::size_t>& older,
+                                                   const std::vector<std::size_t>& newer) const {
+    const std::vector<Floor>& floors = map_.graph.floors();
+    for (const FloorId from : FloorsOf(newer)) {
+      const Floor& one = floors[static_cast<std::size_t>(from)];
+      if (!one.label_given || older_floor_of.count(from) != 0) continue;
+      for (const FloorId to : FloorsOf(older)) {
+        const Floor& other = floors[static_cast<std::size_t>(to)];
+        if (other.label_given && other.label == one.label) older_floor_of.emplace(from, to);
+      }
+    }
+    return older_floor_of;
   }
 
   std::vector<FloorId> FloorsOf(const std::vector<std::size_t>& drives) const {
@@ -382,9 +495,10 @@ class DriveJoiner {
     std::vector<Floor> floors = map_.graph.floors();
     std::vector<FloorId> same(floors.size());
     for (std::size_t i = 0; i < same.size(); ++i) same[i] = static_cast<FloorId>(i);
+    std::set<std::string> taken;
     for (std::size_t piece = 0; piece < CountPieces(); ++piece) {
       const std::vector<std::size_t> drives = DrivesOf(piece);
-      const std::string suffix = piece == 0 ? "" : ".drive" + std::to_string(drives.front() + 1);
+      const std::string suffix = SuffixOf(piece, drives);
       std::vector<FloorId> own = FloorsOf(drives);
       // The floor that the piece began on is its floor 0.
       const FloorId first = map_.graph.nodes()[NodesOfDrive(map_, drives.front()).begin].floor;
@@ -399,7 +513,10 @@ class DriveJoiner {
       }
       const std::vector<std::string> names = FloorNames(levels);
       for (std::size_t i = 0; i < own.size(); ++i) {
-        floors[static_cast<std::size_t>(own[i])].label = names[i] + suffix;
+        std::string& label = floors[static_cast<std::size_t>(own[i])].label;
+        label = names[i] + suffix;
+        // A log may call its floors as a piece of its own would be called.
+        while (!taken.insert(label).second) label += '_';
       }
     }
     Refloor(same, floors, map_);
@@ -455,13 +572,13 @@ class DriveJoiner {
       Move(drives, T_beside_piece);
       all.right = box.right + T_beside_piece.x;
       const Drive& drive = map_.drives[drives.front()];
-      map_.warnings.push_back(drive.log +
-                              ": stays a piece of its own, beside the others: " + drive.reason);
+      said_.push_back(drive.log + kStaysApart + drive.reason);
     }
   }
 
   Options options_;
   MappingResult map_;
+  std::vector<std::string> said_;
   std::set<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>> tried_;
 };
 
@@ -477,11 +594,10 @@ MappingResult JoinDrives(std::vector<MappingResult> maps, const Options& options
   double seconds = 0.0;
   std::optional<StageTimer> timer(std::in_place, seconds);
   progress.Stage("joining");
-  std::size_t said = 0;
-  for (const MappingResult& map : maps) said += map.warnings.size();
   DriveJoiner joiner(std::move(maps.front()), settled);
   for (std::size_t i = 1; i < maps.size(); ++i) joiner.Append(std::move(maps[i]));
-  joiner.Join();
+  joiner.Join(progress);
+  for (const std::string& warning : joiner.said()) progress.Warn(warning);
   MappingResult joined = joiner.Take();
   timer.reset();
   joined.seconds.total += seconds;

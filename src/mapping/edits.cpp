@@ -339,7 +339,7 @@ class Editor {
           continue;
         }
         attempt.state = ClosureState::kAuditedOut;
-        attempt.reason = "forbidden by hand";
+        attempt.reason = kForbiddenByHand;
       }
     }
     return removed;

@@ -178,6 +178,64 @@ TEST_F(StoreysAlike, AreToldApartByTheirNames) {
   EXPECT_EQ(other.graph.floors().back().label, "roof.drive2");
 }
 
+TEST_F(StoreysAlike, AFloorHardlySeenIsTheOneOfItsName) {
+  const std::size_t scans = Second().scans.size();
+  const MappingResult map =
+      Joined({two_floors_, MapOf(Second(), "join_glimpse.log",
+                                 {{0, "low"}, {scans - 12, "-"}, {scans - 2, "high"}})});
+  const DriveFacts facts = FactsOfDrives(map)[1];
+  ASSERT_TRUE(facts.joined) << facts.reason;
+  EXPECT_EQ(facts.floors, (std::vector<std::string>{"low", "high"}));
+  EXPECT_EQ(map.graph.floors().size(), 2U);
+}
+
+TEST(DriveJoining, NoTwoFloorsAreCalledAlike) {
+  const MappingResult map = Joined({MapOf(First(), "join_odd.log", {{0, "0.drive2"}}),
+                                    MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
+  ASSERT_EQ(map.graph.floors().size(), 2U);
+  EXPECT_EQ(map.graph.floors()[0].label, "0.drive2");
+  EXPECT_EQ(map.graph.floors()[1].label, "0.drive2_");
+}
+
+TEST(DriveJoining, APieceWithANamedFloorJoinsWhatGrewLater) {
+  const RingDrive drive(1.0, 0.1, 1);
+  const MappingResult apart = Joined({MapOf(Cut(drive, 0, 150), "join_a.log", {{0, "EG"}}),
+                                      MapOf(Cut(drive, 140, 330), "join_b.log", {{0, "EG"}})});
+  ASSERT_FALSE(FactsOfDrives(apart)[1].joined);
+  EXPECT_EQ(apart.graph.floors()[1].label, "EG.drive2");
+  const MappingResult map = Joined({apart, MapOf(First(), "join_named.log", {{0, "EG"}})});
+  EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 0, 0}));
+  ASSERT_EQ(map.graph.floors().size(), 1U);
+  EXPECT_EQ(map.graph.floors()[0].label, "EG");
+  for (const std::string& warning : map.warnings) {
+    EXPECT_EQ(warning.find("piece of its own"), std::string::npos) << warning;
+  }
+}
+
+TEST(DriveJoining, WhatWasTakenApartByHandStaysApart) {
+  MappingResult map =
+      Joined({MapOf(First(), "join_first.log"), MapOf(Second(), "join_second.log")});
+  std::string edits;
+  for (const Edge& edge : map.graph.edges()) {
+    if (DriveOfNode(map, edge.from) == DriveOfNode(map, edge.to)) continue;
+    char line[200];
+    std::snprintf(line, sizeof line, "- forbid_closure: {from: %.6f, to: %.6f}\n",
+                  map.graph.nodes()[static_cast<std::size_t>(edge.from)].stamp,
+                  map.graph.nodes()[static_cast<std::size_t>(edge.to)].stamp);
+    edits += line;
+  }
+  ApplyEditsText("edits.yaml", edits, {}, map);
+  ASSERT_EQ(map.graph.floors().size(), 1U) << "two pieces on one floor";
+  const MappingResult grown =
+      Joined({map, MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
+  EXPECT_EQ(PiecesOfDrives(grown), (std::vector<std::size_t>{0, 1, 2}));
+  const std::vector<DriveFacts> facts = FactsOfDrives(grown);
+  EXPECT_EQ(facts[0].floors, std::vector<std::string>{"0"});
+  EXPECT_EQ(facts[1].floors, std::vector<std::string>{"0.drive2"});
+  EXPECT_EQ(facts[2].floors, std::vector<std::string>{"0.drive3"});
+  EXPECT_EQ(facts[1].reason, "its closures were forbidden by hand");
+}
+
 TEST(DriveJoining, APieceIsJoinedByHand) {
   // Two halves of the ring that share next to nothing.
   const RingDrive drive(1.0, 0.1, 1);
