@@ -101,12 +101,12 @@ PoseGraph ReadGraph(const std::vector<ScanPoints::ConstPtr>& points_of_nodes, St
   std::vector<BareNode> nodes;
   std::vector<Edge> edges;
   reader(floors, nodes, edges);
-  if (nodes.size() != points_of_nodes.size()) reader.Refuse("nodes without their points");
+  if (nodes.size() != points_of_nodes.size()) StateReader::Refuse("nodes without their points");
   PoseGraph graph;
   for (Floor& floor : floors) graph.AddFloor(std::move(floor));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const BareNode& bare = nodes[i];
-    if (!Exists(bare.floor, floors.size())) reader.Refuse("a node on no floor");
+    if (!Exists(bare.floor, floors.size())) StateReader::Refuse("a node on no floor");
     Node node;
     node.stamp = bare.stamp;
     node.floor = bare.floor;
@@ -120,7 +120,7 @@ PoseGraph ReadGraph(const std::vector<ScanPoints::ConstPtr>& points_of_nodes, St
         edge.from == edge.to ||
         (edge.kind == EdgeKind::kClosure && nodes[static_cast<std::size_t>(edge.from)].floor !=
                                                 nodes[static_cast<std::size_t>(edge.to)].floor)) {
-      reader.Refuse("an edge between nodes that none can join");
+      StateReader::Refuse("an edge between nodes that none can join");
     }
     graph.AddEdge(edge);
   }
@@ -128,19 +128,21 @@ PoseGraph ReadGraph(const std::vector<ScanPoints::ConstPtr>& points_of_nodes, St
 }
 
 // Ids that the mapper would follow without a look.
-void CheckMap(const MappingResult& map, StateReader& reader) {
+void CheckMap(const MappingResult& map) {
   const std::size_t nodes = map.graph.nodes().size();
   for (const TrajectoryPose& pose : map.trajectory) {
     if (!Exists(pose.floor, map.graph.floors().size()) || !Exists(pose.node_before, nodes)) {
-      reader.Refuse("a pose that cannot be");
+      StateReader::Refuse("a pose that cannot be");
     }
   }
   for (const KeptScan& kept : map.kept_scans) {
-    if (kept.trajectory_index >= map.trajectory.size()) reader.Refuse("a scan without a pose");
+    if (kept.trajectory_index >= map.trajectory.size()) {
+      StateReader::Refuse("a scan without a pose");
+    }
   }
   for (const ClosureAttempt& attempt : map.attempts) {
     if (!Exists(attempt.a, nodes) || !Exists(attempt.b, nodes)) {
-      reader.Refuse("an attempt between nodes that there are not");
+      StateReader::Refuse("an attempt between nodes that there are not");
     }
   }
 }
@@ -198,7 +200,7 @@ void AppendPoints(const std::string& bytes, GrownParts& parts) {
   std::vector<float> numbers;
   while (!reader.IsAtEnd()) {
     reader(has_scan, numbers);
-    if (numbers.size() % 2 != 0) reader.Refuse("half a point");
+    if (numbers.size() % 2 != 0) StateReader::Refuse("half a point");
     ScanPoints::Ptr points;
     if (has_scan) points.reset(new ScanPoints);
     for (std::size_t i = 0; has_scan && i < numbers.size(); i += 2) {
@@ -224,9 +226,9 @@ LogSurvey UnpackSurvey(const std::string& bytes) {
   reader(survey);
   reader.RequireEnd();
   const FloorTimeline& floors = survey.floors;
-  if (floors.levels.empty() || floors.intervals.empty()) reader.Refuse("a drive on no floor");
+  if (floors.levels.empty() || floors.intervals.empty()) StateReader::Refuse("a drive on no floor");
   for (const FloorInterval& interval : floors.intervals) {
-    if (interval.level >= floors.levels.size()) reader.Refuse("an interval on no floor");
+    if (interval.level >= floors.levels.size()) StateReader::Refuse("an interval on no floor");
   }
   return survey;
 }
@@ -251,11 +253,11 @@ void MaskedMapper::RestoreState(const std::string& bytes, GrownParts parts) {
   result_.kept_scans = std::move(parts.kept_scans);
   SerializeState(reader);
   reader.RequireEnd();
-  CheckMap(result_, reader);
+  CheckMap(result_);
   const std::size_t nodes = result_.graph.nodes().size();
   const bool holds = result_.graph.floors().size() == floors_.levels.size() &&
                      (!last_scan_node_ || Exists(*last_scan_node_, nodes));
-  if (!holds) reader.Refuse("a mapper that does not hold together");
+  if (!holds) StateReader::Refuse("a mapper that does not hold together");
 }
 
 // What ObserveScan and the functions below it tell the mask, and nothing else of them.
