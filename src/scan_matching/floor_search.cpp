@@ -55,8 +55,9 @@ std::optional<PlaceFit> FloorSearch::Find(
   problem.table = table_.get();
   problem.points_in_query = &points_in_place;
   problem.grid.resolution_m = resolution;
-  problem.grid.T_reference_query_guess = {resolution * (cells.x0 + cells.width / 2),
-                                          resolution * (cells.y0 + cells.height / 2), 0.0};
+  const auto middle_x = cells.x0 + cells.width / 2;
+  const auto middle_y = cells.y0 + cells.height / 2;
+  problem.grid.T_reference_query_guess = {resolution * middle_x, resolution * middle_y, 0.0};
   problem.grid.half_x = cells.width / 2 + 1;
   problem.grid.half_y = cells.height / 2 + 1;
   problem.grid.angle_step = DegToRad(options_.angle_step_deg);

@@ -54,7 +54,8 @@ BlurKernels::BlurKernels(const LookupTableOptions& options)
                      double{kLargestRadius}))),
       row_bytes_((2 * radius_ + 1 + 15) / 16 * 16) {
   const int size = 2 * radius_ + 1;
-  values_.assign(static_cast<std::size_t>(kPhases * kPhases * size * row_bytes_), 0);
+  const int bytes = kPhases * kPhases * size * row_bytes_;
+  values_.assign(static_cast<std::size_t>(bytes), 0);
   const double sigma = std::max(options.sigma_m / options.resolution_m, 1e-6);  // cells
   const double limit2 = kBlurSigmas * kBlurSigmas * sigma * sigma;
   // exp(-d^2 / 2 sigma^2) is a product over the two directions, so few exponentials are needed.
@@ -67,17 +68,20 @@ BlurKernels::BlurKernels(const LookupTableOptions& options)
     offset2[i] = offset * offset;
     factor[i] = std::exp(-offset2[i] / (2.0 * sigma * sigma));
   }
+  constexpr double kToNearest = 0.5;  // never negative here, and a call of lround costs more
   std::uint8_t* values = values_.data();
   for (int phase_y = 0; phase_y < kPhases; ++phase_y) {
     for (int phase_x = 0; phase_x < kPhases; ++phase_x) {
       for (int row = 0; row < size; ++row, values += row_bytes_) {
         for (int column = 0; column < size; ++column) {
-          const auto x = static_cast<std::size_t>(phase_x * size + column);
-          const auto y = static_cast<std::size_t>(phase_y * size + row);
+          const int phased_column = phase_x * size + column;
+          const int phased_row = phase_y * size + row;
+          const auto x = static_cast<std::size_t>(phased_column);
+          const auto y = static_cast<std::size_t>(phased_row);
           // A point's own cell counts however sharp the blur is.
           const bool is_own = row == radius_ && column == radius_;
           if (offset2[x] + offset2[y] > limit2 && !is_own) continue;
-          const auto value = static_cast<int>(255.0 * factor[x] * factor[y] + 0.5);
+          const auto value = static_cast<int>(255.0 * factor[x] * factor[y] + kToNearest);
           values[column] = static_cast<std::uint8_t>(is_own ? std::max(value, 1) : value);
         }
       }
@@ -234,7 +238,8 @@ void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
 // whose own spans overlap by all but one cell. Whole rows of bytes at a time, for the compiler to
 // turn into vector code.
 void LookupTable::BuildPyramid() {
-  const auto widest = static_cast<std::size_t>(levels_.front().width + 2 * kPadding);
+  const int width = levels_.front().width + 2 * kPadding;
+  const auto widest = static_cast<std::size_t>(width);
   std::vector<std::uint8_t> rows(2 * widest);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     const Level& fine = levels_[l];

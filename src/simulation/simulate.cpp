@@ -47,21 +47,8 @@ void CheckRate(double rate, const char* what) {
   }
 }
 
-}  // namespace
-
-SimulationNoise SimulationNoise::None() {
-  return {LidarNoise::None(), OdometryNoise::None(), PressureNoise::None(),
-          AccelerationNoise::None()};
-}
-
-SimulationSummary Simulate(const Building& given, const SimulationOptions& given_options,
-                           const SimulationNoise& noise, const SimulationSink& sink) {
-  Building building = given;
-  SimulationOptions options = given_options;
-  if (options.tour != 1) {
-    building.usual_tour = OtherTour(building, options.seed, options.tour, options.visits);
-    options.seed = RandomGenerator(options.seed, "tour " + std::to_string(options.tour)).Next();
-  }
+SimulationSummary SimulateUsualTour(const Building& building, const SimulationOptions& options,
+                                    const SimulationNoise& noise, const SimulationSink& sink) {
   CheckRate(options.odometry_rate, "odometry");
   CheckRate(options.pressure.rate, "barometer");
   CheckRate(options.acceleration.rate, "accelerometer");
@@ -150,6 +137,23 @@ SimulationSummary Simulate(const Building& given, const SimulationOptions& given
   }
   if (sink.progress) sink.progress(1.0);
   return summary;
+}
+
+}  // namespace
+
+SimulationNoise SimulationNoise::None() {
+  return {LidarNoise::None(), OdometryNoise::None(), PressureNoise::None(),
+          AccelerationNoise::None()};
+}
+
+SimulationSummary Simulate(const Building& building, const SimulationOptions& options,
+                           const SimulationNoise& noise, const SimulationSink& sink) {
+  if (options.tour == 1) return SimulateUsualTour(building, options, noise, sink);
+  Building other_building = building;
+  SimulationOptions other_options = options;
+  other_building.usual_tour = OtherTour(building, options.seed, options.tour, options.visits);
+  other_options.seed = RandomGenerator(options.seed, "tour " + std::to_string(options.tour)).Next();
+  return SimulateUsualTour(other_building, other_options, noise, sink);
 }
 
 }  // namespace masked_mapper

@@ -120,7 +120,7 @@ SimulationSummary SimulateToFiles(const Building& building, const SimulationOpti
     floors.Text("," + pose.floor + "\n");
   };
   sink.progress = progress;
-  const SimulationSummary summary = Simulate(building, options, noise, sink);
+  SimulationSummary summary = Simulate(building, options, noise, sink);
   log.Close();
   truth.Close();
   floors.Close();
