@@ -61,16 +61,24 @@ void AddSeconds(const StageSeconds& more, StageSeconds& seconds) {
   }
 }
 
-void ShiftStamps(double seconds, MappingResult& map) {
-  if (seconds == 0.0) return;
+/// The same nodes, each changed as `change` says of it and its place, and edges, on these floors.
+template <class Change>
+void RebuildGraph(const std::vector<Floor>& floors, const Change& change, MappingResult& map) {
   PoseGraph graph;
-  for (const Floor& floor : map.graph.floors()) graph.AddFloor(floor);
-  for (Node node : map.graph.nodes()) {
-    node.stamp += seconds;
+  for (const Floor& floor : floors) graph.AddFloor(floor);
+  for (std::size_t i = 0; i < map.graph.nodes().size(); ++i) {
+    Node node = map.graph.nodes()[i];
+    change(i, node);
     graph.AddNode(std::move(node));
   }
   for (const Edge& edge : map.graph.edges()) graph.AddEdge(edge);
   map.graph = std::move(graph);
+}
+
+void ShiftStamps(double seconds, MappingResult& map) {
+  if (seconds == 0.0) return;
+  const auto shift = [&](std::size_t, Node& node) { node.stamp += seconds; };
+  RebuildGraph(map.graph.floors(), shift, map);
   for (TrajectoryPose& pose : map.trajectory) pose.stamp += seconds;
   for (KeptScan& kept : map.kept_scans) kept.scan.stamp += seconds;
   for (Drive& drive : map.drives) drive.stamp_offset_s += seconds;
@@ -82,17 +90,13 @@ void ShiftStamps(double seconds, MappingResult& map) {
 /// that share one take the first one's values.
 void Refloor(const std::vector<FloorId>& becomes, const std::vector<Floor>& floors,
              MappingResult& map) {
-  PoseGraph graph;
-  for (const Floor& floor : floors) graph.AddFloor(floor);
-  for (Node node : map.graph.nodes()) {
+  const auto refloor = [&](std::size_t, Node& node) {
     node.floor = becomes[static_cast<std::size_t>(node.floor)];
-    graph.AddNode(std::move(node));
-  }
-  for (const Edge& edge : map.graph.edges()) graph.AddEdge(edge);
+  };
+  RebuildGraph(floors, refloor, map);
   for (TrajectoryPose& pose : map.trajectory) {
     pose.floor = becomes[static_cast<std::size_t>(pose.floor)];
   }
-  map.graph = std::move(graph);
 }
 
 class DriveJoiner {
@@ -249,15 +253,8 @@ class DriveJoiner {
         }
       }
     }
-    PoseGraph graph;
-    for (Floor& floor : floors) graph.AddFloor(std::move(floor));
-    for (std::size_t i = 0; i < floor_of_node.size(); ++i) {
-      Node node = map_.graph.nodes()[i];
-      node.floor = floor_of_node[i];
-      graph.AddNode(std::move(node));
-    }
-    for (const Edge& edge : map_.graph.edges()) graph.AddEdge(edge);
-    map_.graph = std::move(graph);
+    const auto part = [&](std::size_t i, Node& node) { node.floor = floor_of_node[i]; };
+    RebuildGraph(floors, part, map_);
   }
 
   static std::string SuffixOf(std::size_t piece, const std::vector<std::size_t>& drives) {

@@ -19,6 +19,7 @@ constexpr const char* kBelowMinScore = "score below the minimum";
 constexpr const char* kDoesNotFit = "does not fit the surroundings of the older node";
 constexpr const char* kAlikeAlongALine = "the place looks alike along a line";
 constexpr const char* kTooFewVotes = "too few votes";
+constexpr const char* kDisagrees = "disagrees with the optimised map";
 constexpr const char* kFitsTheMap = "fits the optimised map";
 
 /// Whether a match leaves its least certain direction open.
@@ -258,7 +259,7 @@ bool LoopCloser::CloseRevisit(NodeId a, NodeId b) {
     const Eigen::Matrix3d both =
         (refined->T_node_robot.covariance.inverse() + T_b_a.covariance.inverse()).inverse();
     if (!FitsTheMap(attempt)) {
-      attempt.reason = "disagrees with the optimised map";
+      attempt.reason = kDisagrees;
     } else if (IsAmbiguous(both, options_.ambiguity)) {
       attempt.reason = kAlikeAlongALine;
     } else {
@@ -291,7 +292,7 @@ void LoopCloser::Audit() {
     if (known != attempt_of_edge_.end()) {
       ClosureAttempt& attempt = map_.attempts[known->second];
       attempt.state = ClosureState::kAuditedOut;
-      attempt.reason = "disagrees with the optimised map";
+      attempt.reason = kDisagrees;
     }
     map_.graph.RemoveEdge(*edge);
   }
