@@ -254,7 +254,8 @@ std::string OptionListing() {
 std::string MaskHelp() {
   std::string names;
   for (const std::string& name : RegisteredMasks()) names += (names.empty() ? "" : ", ") + name;
-  return "where scans are worth matching: " + names + "; combined as any(a,b), all(a,b), not(a)";
+  return "where scans are worth matching: " + names +
+         "; combined as any(a,b), all(a,b), not(a), sparse(a)";
 }
 
 }  // namespace

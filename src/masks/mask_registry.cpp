@@ -24,7 +24,7 @@ constexpr int kMaxDepth = 32;
 /// A wrong name is quoted up to here.
 constexpr std::size_t kMaxQuoted = 40;
 
-constexpr std::string_view kCombinations[] = {"all", "any", "not"};
+constexpr std::string_view kCombinations[] = {"all", "any", "not", "sparse"};
 
 bool IsCombination(std::string_view name) {
   return std::find(std::begin(kCombinations), std::end(kCombinations), name) !=
@@ -62,15 +62,15 @@ Factories& Registry() {
   std::string hint = DidYouMean(name, known);
   if (hint.empty()) {
     for (const std::string& mask : RegisteredMasks()) hint += (hint.empty() ? "" : ", ") + mask;
-    hint = " (there are " + hint + ", and any(...), all(...), not(...) of them)";
+    hint = " (there are " + hint + ", and any(...), all(...), not(...), sparse(...) of them)";
   }
   const std::string quoted(name.substr(0, kMaxQuoted));
   throw InputError("unknown mask `" + quoted + (quoted.size() < name.size() ? "..." : "") + "`" +
                    hint);
 }
 
-/// expression := name | ("any" | "all") "(" expression { "," expression } ")" | "not" "("
-/// expression ")"
+/// expression := name | ("any" | "all") "(" expression { "," expression } ")"
+///             | ("not" | "sparse") "(" expression ")"
 class ExpressionParser {
  public:
   ExpressionParser(std::string_view text, const MaskOptions& options)
@@ -108,16 +108,18 @@ class ExpressionParser {
       parts.push_back(ParseExpression(depth + 1));
     } while (Peek() == ',');
     if (Peek() != ')') Fail("expected `,` or `)`");
-    if (name == "not" && parts.size() != 1) Fail("`not` takes one part");
+    const bool takes_one = name == "not" || name == "sparse";
+    if (takes_one && parts.size() != 1) Fail("`" + name + "` takes one part");
     ++next_;
     SkipSpace();
     return parts;
   }
 
-  static std::unique_ptr<Mask> Combine(std::string_view name, Parts parts) {
+  std::unique_ptr<Mask> Combine(std::string_view name, Parts parts) const {
     if (name == "any") return std::make_unique<AnyMask>(std::move(parts));
     if (name == "all") return std::make_unique<AllMask>(std::move(parts));
-    return std::make_unique<NotMask>(std::move(parts));
+    if (name == "not") return std::make_unique<NotMask>(std::move(parts));
+    return std::make_unique<SparseMask>(std::move(parts), options_.sparse);
   }
 
   char Peek() const { return next_ < text_.size() ? text_[next_] : '\0'; }

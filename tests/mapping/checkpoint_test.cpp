@@ -93,6 +93,7 @@ TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
       {"any(openings,eccentricity)", MotionSource::kScans, one_floor},
       {"always", MotionSource::kOdometry, two_floors},
       {"not(openings)", MotionSource::kFused, one_floor},
+      {"sparse(always)", MotionSource::kFused, two_floors},
       {"never", MotionSource::kOdometry, one_floor},
   };
   for (const auto& one : drives) {

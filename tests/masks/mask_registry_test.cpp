@@ -48,7 +48,8 @@ TEST(MaskRegistry, KnowsBuiltInAndUserMasks) {
 
 TEST(MaskRegistry, RefusesBadNames) {
   const MaskFactory factory = [](const MaskOptions&) { return std::make_unique<CountingMask>(); };
-  for (const char* name : {"", "any", "all", "not", "Upper", "with space", "a(b", "never"}) {
+  for (const char* name :
+       {"", "any", "all", "not", "sparse", "Upper", "with space", "a(b", "never"}) {
     EXPECT_THROW(RegisterMask(name, factory), std::logic_error) << name;
   }
 }
@@ -98,7 +99,7 @@ TEST(MaskExpression, ErrorsSayWhatAndWhere) {
   EXPECT_EQ(ErrorOf("ani(never)"), "unknown mask `ani` (did you mean `any`?)");
   EXPECT_EQ(ErrorOf("xyzzy"),
             "unknown mask `xyzzy` (there are always, counting, eccentricity, never, openings, and "
-            "any(...), all(...), not(...) of them)");
+            "any(...), all(...), not(...), sparse(...) of them)");
   EXPECT_EQ(ErrorOf(""), "mask expression, character 1: expected the name of a mask");
   EXPECT_EQ(ErrorOf("any"), "mask expression, character 4: expected `(` after `any`");
   EXPECT_EQ(ErrorOf("any()"), "mask expression, character 5: expected the name of a mask");
@@ -108,6 +109,8 @@ TEST(MaskExpression, ErrorsSayWhatAndWhere) {
   EXPECT_EQ(ErrorOf("never always"), "mask expression, character 7: expected the end");
   EXPECT_EQ(ErrorOf("never(always)"), "mask expression, character 6: `never` takes no parts");
   EXPECT_EQ(ErrorOf("not(never,never)"), "mask expression, character 16: `not` takes one part");
+  EXPECT_EQ(ErrorOf("sparse(never,never)"),
+            "mask expression, character 19: `sparse` takes one part");
 }
 
 TEST(MaskExpression, HostileInputIsRefused) {
