@@ -2,13 +2,10 @@
 #include "masked_mapper/loop_closure/open_revisits.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <queue>
 #include <utility>
-
-#include "masked_mapper/geometry/angle.hpp"
 
 namespace masked_mapper {
 
@@ -47,9 +44,7 @@ std::vector<NodeId> OpenRevisits::Of(NodeId node) const {
     if (*candidate >= node) continue;
     if (graph_.nodes()[static_cast<std::size_t>(*candidate)].floor != floor) continue;
     const double distance = Distance(pose, other);
-    const double turn_deg = RadToDeg(std::abs(WrapAngle(other.theta - pose.theta)));
-    if (distance > options_.distance_m || turn_deg > options_.heading_deg) continue;
-    near.emplace_back(distance, *candidate);
+    if (distance <= options_.distance_m) near.emplace_back(distance, *candidate);
   }
   std::vector<NodeId> open;
   if (near.empty()) return open;

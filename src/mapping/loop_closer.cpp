@@ -39,6 +39,7 @@ LoopCloser::LoopCloser(const Options& options, MappingResult& map, ReferencePoin
       map_(map),
       reference_(std::move(reference)),
       matcher_(options.matcher),
+      late_matcher_(options.matcher),
       submaps_(options.submaps, options.motion.scans.map, map),
       validator_(options.validator),
       optimizer_(options.optimizer) {
@@ -239,9 +240,10 @@ bool LoopCloser::CloseRevisit(NodeId a, NodeId b) {
   const std::optional<UncertainPose2> sure_way = SureWay(b, a);
   if (!sure_way) return false;
   const UncertainPose2& T_b_a = *sure_way;
-  const MatchPair pair{b, submaps_.PointsAt(b), submaps_.PointsAt(a), T_b_a};
+  // The robot may have come the other way: its scan then shows what lies behind that of the older.
+  const MatchPair pair{b, submaps_.PointsAround(b), submaps_.PointsAt(a), T_b_a};
   if (!pair.points_in_reference || !pair.points_in_query) return false;
-  const MatchResult match = matcher_.Match({pair}).front();
+  const MatchResult match = late_matcher_.Match({pair}).front();
   ClosureAttempt attempt;
   attempt.a = a;
   attempt.b = b;

@@ -529,8 +529,6 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"polish.most_deg", &o.polish.most_deg, 0, 180, "deg, the same"},
       {"polish.revisits.distance_m", &o.polish.revisits.distance_m, 0, 100,
        "m between two nodes that see one place"},
-      {"polish.revisits.heading_deg", &o.polish.revisits.heading_deg, 0, 180,
-       "deg between their headings"},
       {"polish.revisits.walk_m", &o.polish.revisits.walk_m, 0, 1e6,
        "m along edges, up to which two nodes are joined already"},
       {"audit.max_chi2", &o.audit.max_chi2, 0.1, 1e6,

@@ -10,9 +10,8 @@
 
 namespace masked_mapper {
 
-LocalMap Submaps::Build(NodeId node) const {
+std::vector<LocalMap::PosedPoints> Submaps::ScansAround(NodeId node) const {
   const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
-  LocalMap map(map_options_, Eigen::Vector2d::Zero());
   std::vector<LocalMap::PosedPoints> scans;
   const std::vector<KeptScan>& kept = result_.kept_scans;
   const auto pose_of = [&](const KeptScan& scan) -> const TrajectoryPose& {
@@ -43,8 +42,27 @@ LocalMap Submaps::Build(NodeId node) const {
   add(first_after, end, [](auto scan) { return scan + 1; });
   add(std::make_reverse_iterator(first_after), std::make_reverse_iterator(begin),
       [](auto scan) { return scan + 1; });
-  map.Add(scans);
+  return scans;
+}
+
+LocalMap Submaps::Build(NodeId node) const {
+  LocalMap map(map_options_, Eigen::Vector2d::Zero());
+  map.Add(ScansAround(node));
   return map;
+}
+
+ScanPoints::ConstPtr Submaps::PointsAround(NodeId node) const {
+  const ScanPoints::Ptr points_in_node(new ScanPoints);
+  for (const LocalMap::PosedPoints& scan : ScansAround(node)) {
+    for (const pcl::PointXY& point : *scan.points_in_robot) {
+      const Eigen::Vector2d in_node = scan.T_map_robot * Eigen::Vector2d(point.x, point.y);
+      pcl::PointXY moved;
+      moved.x = static_cast<float>(in_node.x());
+      moved.y = static_cast<float>(in_node.y());
+      points_in_node->push_back(moved);
+    }
+  }
+  return points_in_node;
 }
 
 const LocalMap& Submaps::SubmapOf(NodeId node) {

@@ -12,9 +12,8 @@
 namespace masked_mapper {
 
 struct OpenRevisitOptions {
-  double distance_m = 2.0;    ///< between two nodes that see one place; R of Eq. 7
-  double heading_deg = 45.0;  ///< between their headings
-  double walk_m = 10.0;       ///< along edges, up to which two nodes count as joined already
+  double distance_m = 3.0;  ///< between two nodes at one place
+  double walk_m = 6.0;      ///< along edges, up to which two nodes count as joined already
 };
 
 class OpenRevisits {

@@ -68,6 +68,7 @@ class LoopCloser {
   MappingResult& map_;
   ReferencePoints reference_;
   JointMatcher matcher_;
+  JointMatcher late_matcher_;  ///< its references are other points of the same nodes
   Submaps submaps_;
   LoopValidator validator_;
   PoseGraphOptimizer optimizer_;

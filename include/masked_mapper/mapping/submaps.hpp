@@ -39,8 +39,13 @@ class Submaps {
   /// kept nearest to it. Null when none was kept there.
   ScanPoints::ConstPtr PointsAt(NodeId node) const;
 
+  /// The points of the node's submap, in its frame: what was seen from the way to it and on, so
+  /// that a scan that looks the other way finds it, too.
+  ScanPoints::ConstPtr PointsAround(NodeId node) const;
+
  private:
   const LocalMap& SubmapOf(NodeId node);
+  std::vector<LocalMap::PosedPoints> ScansAround(NodeId node) const;
   LocalMap Build(NodeId node) const;
 
   SubmapOptions options_;
