@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFarthest = 1e4;     // m from the origin
 constexpr double kLargestArea = 2e6;  // m^2, of the table
+constexpr double kMostCells = 2e8;    // a byte each
 // Blocks of 32 cells at the top: measured, fewer roots do not pay for the looser bounds.
 constexpr int kLevels = 6;
 
@@ -36,9 +37,10 @@ FloorSearch::FloorSearch(const ScanPoints& points_in_world, const FloorSearchOpt
     high = high.max(position);
   }
   const Eigen::Array2d size = high - low;
+  const double area = (size.x() + 1.0) * (size.y() + 1.0);
   const bool is_sane = !points_in_world.empty() && (low >= -kFarthest).all() &&
-                       (high <= kFarthest).all() &&
-                       (size.x() + 1.0) * (size.y() + 1.0) <= kLargestArea;
+                       (high <= kFarthest).all() && area <= kLargestArea &&
+                       area <= kMostCells * options.resolution_m * options.resolution_m;
   if (is_sane) table_ = std::make_unique<LookupTable>(points_in_world, table);
 }
 

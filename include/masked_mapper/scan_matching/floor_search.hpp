@@ -32,8 +32,8 @@ struct PlaceFit {
 
 class FloorSearch {
  public:
-  /// Of a floor too large for its cells (beyond 2 km^2 or 10 km from the origin), or without a
-  /// point, nothing is ever found.
+  /// Of a floor too large for its cells (beyond 2 km^2, 2e8 cells or 10 km from the origin), or
+  /// without a point, nothing is ever found.
   FloorSearch(const ScanPoints& points_in_world, const FloorSearchOptions& options);
 
   bool HasFloor() const { return table_ != nullptr; }
