@@ -194,7 +194,7 @@ class Editor {
     std::size_t to = ScanAt(to_stamp, edit);
     ClosureAttempt attempt;
     attempt.state = ClosureState::kValidated;
-    attempt.reason = "added by hand";
+    attempt.reason = kAddedByHand;
     UncertainPose2 T_from_to;
     if (edit.Has("transform")) {
       const std::vector<double> sigma =

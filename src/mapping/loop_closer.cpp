@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/optimization/closure_audit.hpp"
 
@@ -157,6 +158,7 @@ void LoopCloser::Polish() {
     // Drives that do not hang together may have been tried, too: what they have in common by chance
     // says nothing, and their floors are not one.
     if (!CanBeOne(attempt) || !FitsTheMap(attempt)) continue;
+    if (IsForbidden(attempt.a, attempt.b)) continue;
     const ScanPoints::ConstPtr points_at_a = submaps_.PointsAt(attempt.a);
     if (!points_at_a) continue;
     UncertainPose2 guess;
@@ -177,6 +179,14 @@ bool LoopCloser::CanBeOne(const ClosureAttempt& attempt) const {
   const std::vector<Node>& nodes = map_.graph.nodes();
   return attempt.a != attempt.b && nodes[static_cast<std::size_t>(attempt.a)].floor ==
                                        nodes[static_cast<std::size_t>(attempt.b)].floor;
+}
+
+bool LoopCloser::IsForbidden(NodeId one, NodeId other) const {
+  return std::any_of(map_.attempts.begin(), map_.attempts.end(),
+                     [&](const ClosureAttempt& attempt) {
+                       return attempt.reason == kForbiddenByHand &&
+                              std::minmax(attempt.a, attempt.b) == std::minmax(one, other);
+                     });
 }
 
 bool LoopCloser::FitsTheMap(const ClosureAttempt& attempt) const {
@@ -238,7 +248,7 @@ void LoopCloser::CloseOpenRevisits() {
 
 bool LoopCloser::CloseRevisit(NodeId a, NodeId b) {
   const std::optional<UncertainPose2> sure_way = SureWay(b, a);
-  if (!sure_way) return false;
+  if (!sure_way || IsForbidden(a, b)) return false;
   const UncertainPose2& T_b_a = *sure_way;
   // The robot may have come the other way: its scan then shows what lies behind that of the older.
   const MatchPair pair{b, submaps_.PointsAround(b), submaps_.PointsAt(a), T_b_a};
@@ -285,8 +295,13 @@ void LoopCloser::Audit() {
     CloseOpenRevisits();
     Optimize(options_.optimizer.solver, map_.graph);
   }
+  // What somebody added by hand is not for the audit to take away.
+  std::vector<EdgeId> by_hand;
+  for (const auto& [edge, attempt] : attempt_of_edge_) {
+    if (map_.attempts[attempt].reason == kAddedByHand) by_hand.push_back(edge);
+  }
   const std::vector<EdgeId> wrong =
-      AuditClosures(options_.audit, options_.optimizer.solver, map_.graph);
+      AuditClosures(options_.audit, options_.optimizer.solver, map_.graph, by_hand);
   if (wrong.empty()) return;
   for (auto edge = wrong.rbegin(); edge != wrong.rend(); ++edge) {
     // A saved map may hold closures that no attempt tells of.

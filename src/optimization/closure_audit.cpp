@@ -15,8 +15,13 @@ namespace {
 // tolerance added, so that strain shows in them and not in the odometry about them.
 class WeightedEdges {
  public:
-  WeightedEdges(const AuditOptions& options, const OptimizerOptions& solver, PoseGraph& graph)
-      : solver_(solver), graph_(graph), weights_(graph.edges().size(), 1.0) {
+  WeightedEdges(const AuditOptions& options, const OptimizerOptions& solver,
+                const std::vector<EdgeId>& trusted, PoseGraph& graph)
+      : solver_(solver),
+        graph_(graph),
+        weights_(graph.edges().size(), 1.0),
+        is_trusted_(graph.edges().size(), false) {
+    for (const EdgeId edge : trusted) is_trusted_[static_cast<std::size_t>(edge)] = true;
     const double radians = DegToRad(options.tolerance_deg);
     const Eigen::Vector3d tolerance(options.tolerance_m, options.tolerance_m, radians);
     for (const Edge& edge : graph.edges()) {
@@ -28,6 +33,13 @@ class WeightedEdges {
 
   std::size_t size() const { return edges_.size(); }
   const Edge& edge(std::size_t i) const { return edges_[i]; }
+  /// A closure that may go.
+  bool IsQuestioned(std::size_t i) const {
+    return edges_[i].kind == EdgeKind::kClosure && !is_trusted_[i];
+  }
+  bool IsTrusted(std::size_t i) const {
+    return edges_[i].kind == EdgeKind::kFloorChange || is_trusted_[i];
+  }
   double weight(std::size_t i) const { return weights_[i]; }
   void SetWeight(std::size_t i, double weight) { weights_[i] = weight; }
   double Chi2(std::size_t i) const { return EdgeChi2(graph_, edges_[i]); }
@@ -56,6 +68,7 @@ class WeightedEdges {
   PoseGraph& graph_;
   std::vector<Edge> edges_;
   std::vector<double> weights_;
+  std::vector<bool> is_trusted_;
 };
 
 // Whether two closures say the same, going by the graph from the ends of one to those of the other.
@@ -107,16 +120,15 @@ std::vector<std::size_t> Groups(const PoseGraph& graph, const WeightedEdges& edg
 
 // How far every group of edges is beyond what is allowed: the mean of chi^2 over its limit.
 // Odometry may fail too, by a slip that closures agree upon; it is trusted five sigmas far (ours).
-// A change of floor is not questioned.
+// A change of floor is not questioned, nor what the caller trusts.
 std::vector<double> Excess(const WeightedEdges& edges, const std::vector<std::size_t>& group,
                            double max_closure_chi2) {
   constexpr double kMaxOdometryChi2 = 25.0;
   std::vector<double> excess(edges.size(), 0.0);
   std::vector<double> count(edges.size(), 0.0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const EdgeKind kind = edges.edge(i).kind;
-    if (kind == EdgeKind::kFloorChange) continue;
-    const double limit = kind == EdgeKind::kClosure ? max_closure_chi2 : kMaxOdometryChi2;
+    if (edges.IsTrusted(i)) continue;
+    const double limit = edges.IsQuestioned(i) ? max_closure_chi2 : kMaxOdometryChi2;
     excess[group[i]] += edges.Chi2(i) / limit;
     count[group[i]] += 1.0;
   }
@@ -144,7 +156,7 @@ void Graduate(const std::vector<std::size_t>& group, double max_closure_chi2,
   for (int step = 0; step < kMostSteps; ++step, mu *= kStep) {
     bool decided = true;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      const double weight = TruncatedWeight(excess[group[i]], mu);
+      const double weight = edges.IsTrusted(i) ? 1.0 : TruncatedWeight(excess[group[i]], mu);
       decided = decided && (weight == 0.0 || weight == 1.0);
       edges.SetWeight(i, weight);
     }
@@ -165,7 +177,7 @@ void Settle(double max_closure_chi2, WeightedEdges& edges) {
     edges.Solve();
     bool changed = false;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (edges.edge(i).kind != EdgeKind::kClosure) continue;
+      if (!edges.IsQuestioned(i)) continue;
       const double weight = edges.Chi2(i) > max_closure_chi2 ? 0.0 : 1.0;
       // From the middle on nothing comes back, so that no closure goes in and out for ever.
       if (weight == edges.weight(i) || (weight == 1.0 && 2 * round >= kMostRounds)) continue;
@@ -179,14 +191,14 @@ void Settle(double max_closure_chi2, WeightedEdges& edges) {
 }  // namespace
 
 std::vector<EdgeId> AuditClosures(const AuditOptions& options, const OptimizerOptions& solver,
-                                  PoseGraph& graph) {
+                                  PoseGraph& graph, const std::vector<EdgeId>& trusted) {
   Optimize(solver, graph);
   const PoseGraph solved = graph;
-  WeightedEdges edges(options, solver, graph);
+  WeightedEdges edges(options, solver, trusted, graph);
   edges.Solve();
   bool all_agree = true;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (edges.edge(i).kind != EdgeKind::kClosure) continue;
+    if (!edges.IsQuestioned(i)) continue;
     all_agree = all_agree && edges.Chi2(i) <= options.max_chi2;
   }
   std::vector<EdgeId> wrong;
@@ -194,7 +206,7 @@ std::vector<EdgeId> AuditClosures(const AuditOptions& options, const OptimizerOp
     Graduate(Groups(graph, edges), options.max_chi2, edges);
     Settle(options.max_chi2, edges);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (edges.edge(i).kind != EdgeKind::kClosure || edges.weight(i) > 0.0) continue;
+      if (!edges.IsQuestioned(i) || edges.weight(i) > 0.0) continue;
       wrong.push_back(static_cast<EdgeId>(i));
     }
   }

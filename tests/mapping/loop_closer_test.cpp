@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "mapping/ring_logs.hpp"
+#include "masked_mapper/mapping/edits.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -14,6 +15,14 @@ std::size_t CountClosures(const MappingResult& map) {
   return static_cast<std::size_t>(
       std::count_if(map.graph.edges().begin(), map.graph.edges().end(),
                     [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; }));
+}
+
+std::size_t CountBetween(const MappingResult& map, NodeId a, NodeId b) {
+  return static_cast<std::size_t>(
+      std::count_if(map.graph.edges().begin(), map.graph.edges().end(), [&](const Edge& edge) {
+        return edge.kind == EdgeKind::kClosure &&
+               std::minmax(edge.from, edge.to) == std::minmax(a, b);
+      }));
 }
 
 // Closures that are in a finished map are known by their attempts: one that is wrong is audited out
@@ -37,6 +46,52 @@ TEST(LoopCloser, AuditsWhatWasThereBefore) {
   EXPECT_GE(CountClosures(map), closures);
   EXPECT_EQ(map.attempts.back().state, ClosureState::kAuditedOut);
   EXPECT_EQ(map.attempts.back().reason, "disagrees with the optimised map");
+}
+
+TEST(LoopCloser, WhatWasAddedByHandIsNotAuditedOut) {
+  MappingResult map = MapOf(First(), "closer.log");
+  ClosureAttempt by_hand;
+  by_hand.a = static_cast<NodeId>(map.graph.nodes().size() - 1);
+  by_hand.b = 3;
+  by_hand.T_a_b.mean = {7.0, -3.0, 1.0};
+  by_hand.T_a_b.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
+  by_hand.state = ClosureState::kValidated;
+  by_hand.reason = kAddedByHand;
+  const std::size_t place = map.attempts.size();
+  map.attempts.push_back(by_hand);
+  map.graph.AddEdge({by_hand.a, by_hand.b, by_hand.T_a_b, EdgeKind::kClosure});
+  Options options;
+  options.motion.source = MotionSource::kFused;
+  LoopCloser(options, map).Finish();
+  EXPECT_EQ(map.attempts[place].state, ClosureState::kValidated);
+  EXPECT_EQ(CountBetween(map, by_hand.a, by_hand.b), 1U);
+}
+
+// A pair that came to too few votes once more, and fits the map.
+TEST(LoopCloser, WhatWasForbiddenByHandDoesNotEnterLate) {
+  for (const bool forbidden : {false, true}) {
+    MappingResult map = MapOf(First(), "closer.log");
+    const auto closed = std::find_if(
+        map.attempts.begin(), map.attempts.end(),
+        [](const ClosureAttempt& attempt) { return attempt.state == ClosureState::kValidated; });
+    ASSERT_NE(closed, map.attempts.end());
+    const NodeId a = closed->a;
+    const NodeId b = closed->b;
+    for (std::size_t i = map.graph.edges().size(); i-- > 0;) {
+      const Edge& edge = map.graph.edges()[i];
+      if (edge.from == a && edge.to == b) map.graph.RemoveEdge(static_cast<EdgeId>(i));
+    }
+    ClosureAttempt again = *closed;
+    again.state = ClosureState::kHypothesis;
+    again.reason = "too few votes";
+    closed->state = ClosureState::kAuditedOut;
+    closed->reason = forbidden ? kForbiddenByHand : "disagrees with the optimised map";
+    map.attempts.push_back(again);
+    Options options;
+    options.motion.source = MotionSource::kFused;
+    LoopCloser(options, map).Finish();
+    EXPECT_EQ(CountBetween(map, a, b), forbidden ? 0U : 1U);
+  }
 }
 
 // Of a saved map nothing is sure: closures without an attempt, attempts that no closure may come

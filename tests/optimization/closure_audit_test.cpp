@@ -155,6 +155,17 @@ TEST(AuditClosures, TheEdgesAreLeftToTheCallerAndThePosesAreSolvedWithoutThem) {
   }
 }
 
+TEST(AuditClosures, WhatIsTrustedStays) {
+  Block block(10, 3, 2);
+  block.Plant(100, 25, {5.0, 1.0, 0.2});
+  block.Plant(60, 12, {-6.0, 2.0, 0.1});
+  ASSERT_EQ(AuditClosures({}, {}, block.graph()), block.planted());
+  const EdgeId trusted = block.planted().back();
+  const std::vector<EdgeId> wrong = AuditClosures({}, {}, block.graph(), {trusted});
+  EXPECT_EQ(std::count(wrong.begin(), wrong.end(), trusted), 0);
+  EXPECT_EQ(std::count(wrong.begin(), wrong.end(), block.planted().front()), 1);
+}
+
 TEST(AuditClosures, NothingToAudit) {
   PoseGraph graph;
   EXPECT_TRUE(AuditClosures({}, {}, graph).empty());

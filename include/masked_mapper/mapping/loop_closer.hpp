@@ -57,6 +57,7 @@ class LoopCloser {
   void CloseOpenRevisits();
   bool CloseRevisit(NodeId a, NodeId b);
   bool CanBeOne(const ClosureAttempt& attempt) const;
+  bool IsForbidden(NodeId one, NodeId other) const;
   bool FitsTheMap(const ClosureAttempt& attempt) const;
   Pose2 MapBetween(NodeId from, NodeId to) const;
   std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;

@@ -25,9 +25,10 @@ struct AuditOptions {
   double tolerance_deg = 1.5;
 };
 
-/// Closures that disagree, in order of ids; none when all fit. The graph keeps its edges, and its
-/// poses become the solution without those closures: the caller removes the edges, the last first.
+/// Closures that disagree, in order of ids; none when all fit, and none of `trusted`, which others
+/// have to agree with. The graph keeps its edges, and its poses become the solution without those
+/// closures: the caller removes the edges, the last first.
 std::vector<EdgeId> AuditClosures(const AuditOptions& options, const OptimizerOptions& solver,
-                                  PoseGraph& graph);
+                                  PoseGraph& graph, const std::vector<EdgeId>& trusted = {});
 
 }  // namespace masked_mapper
