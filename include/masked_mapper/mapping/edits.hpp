@@ -19,6 +19,7 @@ namespace masked_mapper {
 
 /// The reason of an attempt whose closure was forbidden; what grows the map later heeds it.
 constexpr const char* kForbiddenByHand = "forbidden by hand";
+/// And of one that was added: no audit takes it out.
 constexpr const char* kAddedByHand = "added by hand";
 
 /// Changes a finished map as the file says, in its order, solves it again and bends the trajectory

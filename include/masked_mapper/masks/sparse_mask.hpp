@@ -13,10 +13,9 @@
 namespace masked_mapper {
 
 struct SparseMaskOptions {
-  double place_m = 3.0;  ///< m; views nearer than this, straight line, are of one place
-  double pass_m = 15.0;  ///< m of path that are one pass; what was seen earlier is seen again
-  double turn_deg =
-      120.0;  ///< deg between views of one direction; scanners that see all around: any
+  double place_m = 3.0;       ///< m; views nearer than this, straight line, are of one place
+  double pass_m = 15.0;       ///< m of path that are one pass; what was seen earlier is seen again
+  double turn_deg = 120.0;    ///< deg between views of one direction; full circles: any
   double drift_share = 0.03;  ///< of odometry, m per m of path since the earlier view
 };
 
