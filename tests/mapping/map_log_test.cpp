@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -94,6 +95,15 @@ TEST(MapLog, AcesIsMappedAsWellAsItsRelationsCanTell) {
   // Fewer matches is what a mask is for (Section I).
   const MappingResult always = MapLog(path, "always", {}, silent);
   EXPECT_LE(3 * openings.attempts.size(), always.attempts.size());
+  // And still fewer of the same map, where new ground asks for few nodes.
+  const MappingResult sparse = MapLog(path, "sparse(openings)", {}, silent);
+  EXPECT_LE(4 * sparse.attempts.size(), 3 * openings.attempts.size());
+  double apart = 0.0;
+  for (std::size_t i = 0; i < sparse.trajectory.size(); ++i) {
+    apart = std::max(
+        apart, Distance(sparse.trajectory[i].T_world_robot, openings.trajectory[i].T_world_robot));
+  }
+  EXPECT_LT(apart, 0.5) << "m";
 }
 
 }  // namespace

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "mapping/ring_drive.hpp"
 
 namespace masked_mapper {
@@ -80,6 +84,37 @@ TEST(Submaps, AnOdometryNodeSeesWhatTheScanKeptNearestSaw) {
   }
   map.kept_scans.clear();
   EXPECT_FALSE(submaps.PointsAt(id)) << "nothing was kept";
+}
+
+TEST(Submaps, TheSurroundingsAreWhatWasSeenFromTheWayToANodeAndOn) {
+  const RingDrive drive(0.25, 0.0);
+  MappingResult map = FirstLeg(drive, 100);  // straight, so that way and distance are the same
+  SubmapOptions options;
+  options.half_length_m = 1.13;
+  const Submaps submaps(options, {}, map);
+  const Pose2& T_world_node = drive.truth[50];
+  std::vector<std::pair<float, float>> expected;
+  std::size_t scans = 0;
+  for (std::size_t i = 0; i < 100; ++i) {
+    if (Distance(drive.truth[i], T_world_node) > options.half_length_m) continue;
+    ++scans;
+    const ScanPoints::ConstPtr points_in_robot = PointsInRobot(drive.scans[i]);
+    for (const pcl::PointXY& point : *points_in_robot) {
+      const Eigen::Vector2d in_node =
+          Between(T_world_node, drive.truth[i]) * Eigen::Vector2d(point.x, point.y);
+      expected.emplace_back(static_cast<float>(in_node.x()), static_cast<float>(in_node.y()));
+    }
+  }
+  ASSERT_GT(scans, 3U);
+  ASSERT_LT(scans, 100U);
+  std::vector<std::pair<float, float>> seen;
+  const ScanPoints::ConstPtr around = submaps.PointsAround(0);
+  for (const pcl::PointXY& point : *around) seen.emplace_back(point.x, point.y);
+  std::sort(expected.begin(), expected.end());
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(seen, expected);
+  map.kept_scans.clear();
+  EXPECT_TRUE(submaps.PointsAround(0)->empty()) << "nothing was kept";
 }
 
 }  // namespace
