@@ -250,9 +250,10 @@ bool LoopCloser::CloseRevisit(NodeId a, NodeId b) {
   const std::optional<UncertainPose2> sure_way = SureWay(b, a);
   if (!sure_way || IsForbidden(a, b)) return false;
   const UncertainPose2& T_b_a = *sure_way;
+  const ScanPoints::ConstPtr points_at_a = submaps_.PointsAt(a);
+  if (!points_at_a) return false;
   // The robot may have come the other way: its scan then shows what lies behind that of the older.
-  const MatchPair pair{b, submaps_.PointsAround(b), submaps_.PointsAt(a), T_b_a};
-  if (!pair.points_in_reference || !pair.points_in_query) return false;
+  const MatchPair pair{b, submaps_.PointsAround(b), points_at_a, T_b_a};
   const MatchResult match = late_matcher_.Match({pair}).front();
   ClosureAttempt attempt;
   attempt.a = a;
@@ -264,7 +265,7 @@ bool LoopCloser::CloseRevisit(NodeId a, NodeId b) {
                           options_.candidates.match_range_m);
   if (match.outcome != MatchOutcome::kMatched) {
     attempt.reason = kBelowMinScore;
-  } else if (const auto refined = submaps_.Refine(b, *pair.points_in_query, T_b_a)) {
+  } else if (const auto refined = submaps_.Refine(b, *points_at_a, T_b_a)) {
     attempt.state = ClosureState::kHypothesis;
     attempt.T_a_b = Inverse(refined->T_node_robot);
     attempt.agreement = refined->inlier_share;

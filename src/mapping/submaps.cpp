@@ -9,6 +9,20 @@
 #include "masked_mapper/mapping/drives.hpp"
 
 namespace masked_mapper {
+namespace {
+
+void AppendMoved(const ScanPoints& points_in_robot, const Pose2& T_node_robot,
+                 ScanPoints& points_in_node) {
+  for (const pcl::PointXY& point : points_in_robot) {
+    const Eigen::Vector2d in_node = T_node_robot * Eigen::Vector2d(point.x, point.y);
+    pcl::PointXY moved;
+    moved.x = static_cast<float>(in_node.x());
+    moved.y = static_cast<float>(in_node.y());
+    points_in_node.push_back(moved);
+  }
+}
+
+}  // namespace
 
 std::vector<LocalMap::PosedPoints> Submaps::ScansAround(NodeId node) const {
   const Node& center = result_.graph.nodes()[static_cast<std::size_t>(node)];
@@ -54,13 +68,7 @@ LocalMap Submaps::Build(NodeId node) const {
 ScanPoints::ConstPtr Submaps::PointsAround(NodeId node) const {
   const ScanPoints::Ptr points_in_node(new ScanPoints);
   for (const LocalMap::PosedPoints& scan : ScansAround(node)) {
-    for (const pcl::PointXY& point : *scan.points_in_robot) {
-      const Eigen::Vector2d in_node = scan.T_map_robot * Eigen::Vector2d(point.x, point.y);
-      pcl::PointXY moved;
-      moved.x = static_cast<float>(in_node.x());
-      moved.y = static_cast<float>(in_node.y());
-      points_in_node->push_back(moved);
-    }
+    AppendMoved(*scan.points_in_robot, scan.T_map_robot, *points_in_node);
   }
   return points_in_node;
 }
@@ -118,16 +126,8 @@ ScanPoints::ConstPtr Submaps::PointsAt(NodeId node) const {
   if (after != kept.begin()) look_at(*std::prev(after));
   if (after != kept.end()) look_at(*after);
   if (nearest == nullptr) return nullptr;
-  const ScanPoints::ConstPtr points_in_scan = PointsInRobot(nearest->scan);
   const ScanPoints::Ptr points_in_node(new ScanPoints);
-  const double c = std::cos(T_node_scan.theta);
-  const double s = std::sin(T_node_scan.theta);
-  for (const pcl::PointXY& point : *points_in_scan) {
-    pcl::PointXY moved;
-    moved.x = static_cast<float>(T_node_scan.x + c * point.x - s * point.y);
-    moved.y = static_cast<float>(T_node_scan.y + s * point.x + c * point.y);
-    points_in_node->push_back(moved);
-  }
+  AppendMoved(*PointsInRobot(nearest->scan), T_node_scan, *points_in_node);
   return points_in_node;
 }
 

@@ -40,7 +40,7 @@ class Submaps {
   ScanPoints::ConstPtr PointsAt(NodeId node) const;
 
   /// The points of the node's submap, in its frame: what was seen from the way to it and on, so
-  /// that a scan that looks the other way finds it, too.
+  /// that a scan that looks the other way finds it, too. Never null; empty when none was kept.
   ScanPoints::ConstPtr PointsAround(NodeId node) const;
 
  private:
