@@ -14,12 +14,11 @@ constexpr double kPathStep = 0.5;
 
 void SparseMask::Observe(const MaskObservation& observation) {
   CombinedMask::Observe(observation);
-  if (has_observed_) {
+  if (!path_.empty()) {
     now_.path_length += Distance(now_.T_odom_robot, observation.T_odom_robot);
   }
   now_.T_odom_robot = observation.T_odom_robot;
   sees_all_around_ = observation.scan.IsFullCircle();
-  has_observed_ = true;
   if (path_.empty() || now_.path_length - path_.back().path_length >= kPathStep) {
     path_.push_back(now_);
   }
@@ -32,7 +31,7 @@ void SparseMask::Observe(const MaskObservation& observation) {
 
 void SparseMask::OnNode() {
   CombinedMask::OnNode();
-  if (has_observed_) nodes_.push_back(now_);
+  if (!path_.empty()) nodes_.push_back(now_);
 }
 
 void SparseMask::Restart() {
@@ -40,7 +39,6 @@ void SparseMask::Restart() {
   now_ = {};
   nodes_.clear();
   path_.clear();
-  has_observed_ = false;
   fires_ = false;
 }
 

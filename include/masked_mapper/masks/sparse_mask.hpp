@@ -46,8 +46,7 @@ class SparseMask : public CombinedMask {
   View now_;
   bool sees_all_around_ = false;  ///< the scan observed last
   std::vector<View> nodes_;       ///< of this pass, oldest first
-  std::vector<View> path_;        ///< thinned, oldest first
-  bool has_observed_ = false;
+  std::vector<View> path_;        ///< thinned, oldest first; empty before the first scan
   bool fires_ = false;
 };
 
