@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "mapping/ring_logs.hpp"
 #include "masked_mapper/mapping/edits.hpp"
@@ -25,20 +26,27 @@ std::size_t CountBetween(const MappingResult& map, NodeId a, NodeId b) {
       }));
 }
 
-// Closures that are in a finished map are known by their attempts: one that is wrong is audited out
-// by name.
-TEST(LoopCloser, AuditsWhatWasThereBefore) {
-  MappingResult map = MapOf(First(), "closer.log");
-  const std::size_t closures = CountClosures(map);
-  ASSERT_GT(closures, 1U);
+// A validated closure from the last node to the fourth, metres off; the place of its attempt.
+std::size_t PlantWrong(MappingResult& map, const std::string& reason) {
   ClosureAttempt wrong;
   wrong.a = static_cast<NodeId>(map.graph.nodes().size() - 1);
   wrong.b = 3;
   wrong.T_a_b.mean = {7.0, -3.0, 1.0};
   wrong.T_a_b.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
   wrong.state = ClosureState::kValidated;
+  wrong.reason = reason;
   map.attempts.push_back(wrong);
   map.graph.AddEdge({wrong.a, wrong.b, wrong.T_a_b, EdgeKind::kClosure});
+  return map.attempts.size() - 1;
+}
+
+// Closures that are in a finished map are known by their attempts: one that is wrong is audited out
+// by name.
+TEST(LoopCloser, AuditsWhatWasThereBefore) {
+  MappingResult map = MapOf(First(), "closer.log");
+  const std::size_t closures = CountClosures(map);
+  ASSERT_GT(closures, 1U);
+  PlantWrong(map, "");
   Options options;
   options.motion.source = MotionSource::kFused;
   LoopCloser closer(options, map);
@@ -50,21 +58,12 @@ TEST(LoopCloser, AuditsWhatWasThereBefore) {
 
 TEST(LoopCloser, WhatWasAddedByHandIsNotAuditedOut) {
   MappingResult map = MapOf(First(), "closer.log");
-  ClosureAttempt by_hand;
-  by_hand.a = static_cast<NodeId>(map.graph.nodes().size() - 1);
-  by_hand.b = 3;
-  by_hand.T_a_b.mean = {7.0, -3.0, 1.0};
-  by_hand.T_a_b.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
-  by_hand.state = ClosureState::kValidated;
-  by_hand.reason = kAddedByHand;
-  const std::size_t place = map.attempts.size();
-  map.attempts.push_back(by_hand);
-  map.graph.AddEdge({by_hand.a, by_hand.b, by_hand.T_a_b, EdgeKind::kClosure});
+  const std::size_t place = PlantWrong(map, kAddedByHand);
   Options options;
   options.motion.source = MotionSource::kFused;
   LoopCloser(options, map).Finish();
   EXPECT_EQ(map.attempts[place].state, ClosureState::kValidated);
-  EXPECT_EQ(CountBetween(map, by_hand.a, by_hand.b), 1U);
+  EXPECT_EQ(CountBetween(map, map.attempts[place].a, map.attempts[place].b), 1U);
 }
 
 // A pair that came to too few votes once more, and fits the map.
