@@ -18,7 +18,7 @@
 #include "masked_mapper/evaluation/relations.hpp"
 #include "masked_mapper/evaluation/result_folder.hpp"
 #include "masked_mapper/evaluation/trajectory_error.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/export/single_export.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
-#include "masked_mapper/mapping/edits.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "run_description.hpp"
 #include "saved_map_path.hpp"
 
@@ -80,15 +80,15 @@ SavedMap ReadMap(const ExportArguments& arguments) {
     SetOption("--resolution", "grid.resolution_m", arguments.resolution, map.origin.options);
   }
   if (!arguments.edits.empty()) {
-    ApplyEdits(arguments.edits, map.origin.options, map.result);
+    ApplyEdits(arguments.edits, map.origin.options.mapping.closures, map.result);
   }
   return map;
 }
 
 ExportOptions OptionsOf(const SavedMap& map) {
-  ExportOptions options{map.origin.options.grid, map.origin.options.octree};
-  options.grid.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return options;
+  Options options = map.origin.options;
+  SettleThreads(options);
+  return {options.grid, options.octree};
 }
 
 /// A whole folder, as `map` writes it.

@@ -163,7 +163,7 @@ int RunInfo(const InfoArguments& arguments) {
     PrintMapInfo(arguments.log, arguments.json);
     return 0;
   }
-  const LogSummary summary = Summarise(arguments.log, options.log);
+  const LogSummary summary = Summarise(arguments.log, options.mapping.log);
   (arguments.json ? PrintJson : PrintText)(arguments.log, summary);
   return 0;
 }

@@ -10,8 +10,8 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "masked_mapper/log/did_you_mean.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,21 +12,21 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/closing_table.hpp"
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/export/output_folder.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/joining/drive_joining.hpp"
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
-#include "masked_mapper/mapping/configuration.hpp"
-#include "masked_mapper/mapping/drive_joining.hpp"
-#include "masked_mapper/mapping/edits.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
-#include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/options/configuration.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "option_flags.hpp"
 #include "progress_bar.hpp"
 #include "run_description.hpp"
@@ -73,7 +73,7 @@ MapOrigin OriginOfDrive(const MapOrigin& origin, std::size_t drive) {
   MapOrigin own = origin;
   if (drive == 0) return own;
   own.log = origin.later_logs[drive - 1].log;
-  own.options.floors.file = origin.later_logs[drive - 1].floors;
+  own.options.mapping.floors.file = origin.later_logs[drive - 1].floors;
   return own;
 }
 
@@ -118,7 +118,8 @@ MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Ke
     const MapOrigin own = OriginOfDrive(origin, keeping.drive);
     keeping.checkpoints = std::make_unique<CheckpointFile>(
         arguments.out, origin, arguments.checkpoint_s, arguments.resume, keeping.drive);
-    maps.push_back(MapLog(own.log, own.mask, own.options, progress, keeping.checkpoints.get()));
+    maps.push_back(
+        MapLog(own.log, own.mask, own.options.mapping, progress, keeping.checkpoints.get()));
     const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
                                   keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
     if (is_alone || !is_worth_keeping || arguments.checkpoint_s == 0.0) continue;
@@ -130,7 +131,8 @@ MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Ke
       progress.Warn(std::string(error.what()) + "; going on without keeping the drive");
     }
   }
-  return JoinDrives(std::move(maps), origin.options, progress);
+  return JoinDrives(std::move(maps), origin.options.drive_joins, origin.options.mapping.closures,
+                    progress);
 }
 
 /// Maps and writes all of OUT.
@@ -138,7 +140,7 @@ Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, Existing
                 Keeping& keeping, ProgressBar& progress) {
   const Options& options = origin.options;
   MappingResult result = MapLogs(arguments, origin, keeping, progress);
-  if (!arguments.edits.empty()) ApplyEdits(arguments.edits, options, result);
+  if (!arguments.edits.empty()) ApplyEdits(arguments.edits, options.mapping.closures, result);
   progress.Stage("writing");
   OutputFolder folder(arguments.out, existing);
   double map_file_seconds = 0.0;
@@ -148,8 +150,7 @@ Summary MakeMap(const MapArguments& arguments, const MapOrigin& origin, Existing
   }
   result.seconds.export_ += map_file_seconds;
   result.seconds.total += map_file_seconds;
-  ExportOptions export_options{options.grid, options.octree};
-  export_options.grid.threads = options.threads;
+  const ExportOptions export_options{options.grid, options.octree};
   Summary summary = WriteMap(result, DescriptionOf(origin, result), export_options, folder.path());
   ThrowIfInterrupted();
   folder.Commit();
@@ -172,7 +173,7 @@ MapOrigin OriginOf(const MapArguments& arguments, Options options) {
                      " logs: once for each, in their order, `-` for none");
   }
   const auto floors_of = [&](std::size_t log) {
-    if (given == 0) return options.floors.file;
+    if (given == 0) return options.mapping.floors.file;
     return arguments.floors[log] == "-" ? std::string() : arguments.floors[log];
   };
   MapOrigin origin;
@@ -182,7 +183,7 @@ MapOrigin OriginOf(const MapArguments& arguments, Options options) {
     origin.later_logs.push_back({arguments.logs[i], floors_of(i)});
   }
   origin.onto = arguments.onto;
-  options.floors.file = floors_of(0);
+  options.mapping.floors.file = floors_of(0);
   origin.options = std::move(options);
   CheckOptions(origin.options);
   return origin;
@@ -192,15 +193,14 @@ int RunMap(const MapArguments& arguments) {
   Options options = ReadOptions(arguments.options);
   if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
   CheckOptions(options);
-  if (options.threads == 0) {
-    options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  }
-  MakeMask(arguments.mask, options.masks);  // throws before the log is looked at
+  SettleThreads(options);
+  MakeMask(arguments.mask, options.mapping.masks);  // throws before the log is looked at
   // Before the work: an hour of mapping must not end in "exists already".
   const ExistingFolder existing = HowToTreat(arguments);
   const MapOrigin origin = OriginOf(arguments, options);
   // The same of a later log or a map that is not there.
-  for (const MapOrigin::LaterLog& later : origin.later_logs) OpenLog(later.log, options.log);
+  for (const MapOrigin::LaterLog& later : origin.later_logs)
+    OpenLog(later.log, options.mapping.log);
   if (!origin.onto.empty()) MapFileOf(origin.onto);
   Keeping keeping{FinishedDrives(arguments.out, origin, arguments.resume), nullptr,
                   arguments.logs.size()};

@@ -11,9 +11,9 @@
 
 #include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/export/map_export.hpp"
-#include "masked_mapper/export/number_text.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/number_text.hpp"
 #include "run_description.hpp"
 #include "saved_map_path.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "option_flags.hpp"
 
-#include "masked_mapper/mapping/configuration.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/configuration.hpp"
+#include "masked_mapper/options/option_table.hpp"
 
 namespace masked_mapper {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/options/options.hpp"
 
 namespace masked_mapper {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "masked_mapper/mapping/progress_sink.hpp"
+#include "masked_mapper/map/progress_sink.hpp"
 
 namespace masked_mapper {
 

@@ -4,7 +4,7 @@
 
 #include "masked_mapper/export/summary_file.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/option_table.hpp"
 
 namespace masked_mapper {
 

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string_view>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 

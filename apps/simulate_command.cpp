@@ -9,11 +9,11 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "masked_mapper/log/did_you_mean.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/building_file.hpp"
 #include "masked_mapper/simulation/building_plans.hpp"
 #include "masked_mapper/simulation/simulation_files.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "progress_bar.hpp"
 
 namespace masked_mapper {

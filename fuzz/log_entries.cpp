@@ -2,9 +2,9 @@
 #include "fuzz/entries.hpp"
 #include "fuzz/input_file.hpp"
 #include "masked_mapper/log/carmen_reader.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
 #include "masked_mapper/log/rosbag_reader.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "fuzz/entries.hpp"
 #include "fuzz/input_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/mapping/configuration.hpp"
-#include "masked_mapper/mapping/edits.hpp"
+#include "masked_mapper/options/configuration.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {
 
@@ -25,7 +25,7 @@ void Edits(const std::uint8_t* data, std::size_t size) {
   MappingResult map = start.result;
   try {
     ApplyEditsText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size),
-                   start.origin.options, map);
+                   start.origin.options.mapping.closures, map);
   } catch (const InputError&) {
   }
 }

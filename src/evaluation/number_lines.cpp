@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/line_splitter.hpp"
 #include "masked_mapper/log/text_source.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "masked_mapper/evaluation/number_lines.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/export/number_text.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {

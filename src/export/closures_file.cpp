@@ -3,8 +3,8 @@
 
 #include <cassert>
 
-#include "masked_mapper/export/number_text.hpp"
 #include "masked_mapper/export/output_file.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {

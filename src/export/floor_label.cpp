@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 

@@ -10,8 +10,8 @@
 #include <ostream>
 #include <streambuf>
 
-#include "masked_mapper/export/number_text.hpp"
 #include "masked_mapper/export/output_file.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace fs = std::filesystem;
 

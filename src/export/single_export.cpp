@@ -9,8 +9,8 @@
 #include "masked_mapper/export/octomap_file.hpp"
 #include "masked_mapper/export/point_cloud_file.hpp"
 #include "masked_mapper/export/trajectory_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "masked_mapper/export/closures_file.hpp"
-#include "masked_mapper/export/number_text.hpp"
 #include "masked_mapper/export/output_file.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {

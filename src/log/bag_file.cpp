@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

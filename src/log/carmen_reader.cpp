@@ -9,12 +9,12 @@
 
 #include "masked_mapper/log/bounded_queue.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/line_splitter.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
 #include "masked_mapper/log/scan_calibration.hpp"
 #include "masked_mapper/log/stamp_mender.hpp"
 #include "masked_mapper/log/text_source.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -13,9 +13,7 @@
 
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/bag_file.hpp"
-#include "masked_mapper/log/did_you_mean.hpp"
 #include "masked_mapper/log/frame_tree.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/odometry_at_scans.hpp"
 #include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
@@ -23,6 +21,8 @@
 #include "masked_mapper/log/ros_messages.hpp"
 #include "masked_mapper/log/scan_merger.hpp"
 #include "masked_mapper/log/stamp_mender.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

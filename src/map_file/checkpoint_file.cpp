@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "database.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 
 namespace fs = std::filesystem;
@@ -71,7 +71,7 @@ std::string LogIdentity(const std::string& log, const std::string& floors_file) 
 // Of everything that is read, a line each, by name.
 std::vector<std::pair<std::string, std::string>> Identities(const MapOrigin& origin) {
   std::vector<std::pair<std::string, std::string>> lines = {
-      {origin.log, LogIdentity(origin.log, origin.options.floors.file)}};
+      {origin.log, LogIdentity(origin.log, origin.options.mapping.floors.file)}};
   for (const MapOrigin::LaterLog& later : origin.later_logs) {
     lines.emplace_back(later.log, LogIdentity(later.log, later.floors));
   }

@@ -13,9 +13,9 @@
 
 #include "database.hpp"
 #include "map_rows.hpp"
-#include "masked_mapper/log/input_error.hpp"
-#include "masked_mapper/mapping/drives.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/map/drives.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "database.hpp"
 #include "map_rows.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/option_table.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
 

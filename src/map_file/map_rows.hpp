@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
 

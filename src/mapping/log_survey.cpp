@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "masked_mapper/log/floor_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -39,7 +39,7 @@ void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
 }
 
 /// Looks at the first turns of the drive once more, with beams.
-std::string FaultOfMount(const std::string& path, const Options& options) {
+std::string FaultOfMount(const std::string& path, const MappingOptions& options) {
   MountCheck check(options.motion);
   const std::unique_ptr<LogReader> log = OpenLog(path, options.log);
   while (!check.IsSettled()) {
@@ -52,7 +52,7 @@ std::string FaultOfMount(const std::string& path, const Options& options) {
 
 }  // namespace
 
-LogSurvey SurveyLog(const std::string& path, const Options& options) {
+LogSurvey SurveyLog(const std::string& path, const MappingOptions& options) {
   LogOptions log_options = options.log;
   log_options.read_ranges = false;
   FloorTracker floors(options.floors);

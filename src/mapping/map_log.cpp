@@ -8,20 +8,15 @@
 #include <thread>
 #include <utility>
 
-#include "masked_mapper/log/input_error.hpp"
-#include "masked_mapper/mapping/floor_joining.hpp"
+#include "masked_mapper/joining/floor_joining.hpp"
+#include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
-#include "masked_mapper/mapping/stage_timer.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
-
-int ThreadCount(int requested) {
-  if (requested > 0) return requested;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 /// What was skipped or mended, said once.
 void WarnOfTheLog(const std::string& path, const LogStatistics& log, MappingResult& result) {
@@ -50,7 +45,7 @@ std::string PackState(const LogSurvey& survey, MaskedMapper& mapper) {
 // One run over a log, with whatever is kept of it on the way.
 class LogDrive {
  public:
-  LogDrive(const std::string& path, const std::string& mask, const Options& options,
+  LogDrive(const std::string& path, const std::string& mask, const MappingOptions& options,
            ProgressSink& progress, CheckpointStore* checkpoints)
       : path_(path),
         mask_(mask),
@@ -74,8 +69,8 @@ class LogDrive {
       }
     }
     settled_ = options_;
-    settled_.matcher.threads = ThreadCount(options_.threads);
     settled_.motion.source = SettleMotionSource(path_, options_.motion, survey_);
+    settled_.closures.refine = settled_.motion.source != MotionSource::kOdometry;
     Begin();
     if (checkpoint) {
       mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));
@@ -117,7 +112,8 @@ class LogDrive {
   // With a floor met again as one level, its visits are matched with each other like any others;
   // that takes another drive through the log.
   bool FloorsWereJoined() {
-    const FloorJoining joining = JoinFloors(mapper_->result(), survey_.floors, settled_);
+    const FloorJoining joining =
+        JoinFloors(mapper_->result(), survey_.floors, settled_.floor_joins, settled_.closures);
     if (!joining.any_joined) return false;
     survey_.floors = joining.floors;
     survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());
@@ -176,8 +172,8 @@ class LogDrive {
 
   std::string path_;
   std::string mask_;
-  Options options_;
-  Options settled_;
+  MappingOptions options_;
+  MappingOptions settled_;
   ProgressSink& progress_;
   CheckpointStore* checkpoints_;
   LogSurvey survey_;
@@ -191,8 +187,9 @@ class LogDrive {
 
 }  // namespace
 
-MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
-                     ProgressSink& progress, CheckpointStore* checkpoints) {
+MappingResult MapLog(const std::string& path, const std::string& mask,
+                     const MappingOptions& options, ProgressSink& progress,
+                     CheckpointStore* checkpoints) {
   double total_seconds = 0.0;
   std::optional<StageTimer> total_timer(std::in_place, total_seconds);
   MappingResult result;

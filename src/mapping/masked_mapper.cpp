@@ -6,18 +6,18 @@
 #include <cmath>
 #include <utility>
 
-#include "masked_mapper/mapping/stage_timer.hpp"
-#include "masked_mapper/mapping/trajectory.hpp"
+#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map/trajectory.hpp"
 
 namespace masked_mapper {
 
-MaskedMapper::MaskedMapper(const std::string& mask, const Options& options,
+MaskedMapper::MaskedMapper(const std::string& mask, const MappingOptions& options,
                            const FloorTimeline& floors)
     : options_(options),
       floors_(floors),
       motion_(options.motion),
       mask_(MakeMask(mask, options.masks)),
-      closer_(options_, result_) {
+      closer_(options_.closures, result_) {
   const std::vector<std::string> names = FloorNames(floors.levels);
   for (std::size_t i = 0; i < floors.levels.size(); ++i) {
     const FloorLevel& level = floors.levels[i];
@@ -139,8 +139,9 @@ void MaskedMapper::CloseLoops(NodeId new_node) {
   std::vector<Candidate> candidates;
   {
     const StageTimer timer(result_.seconds.projection);
-    candidates = FindCandidates(result_.graph, new_node,
-                                DijkstraProjection(result_.graph, new_node), options_.candidates);
+    candidates =
+        FindCandidates(result_.graph, new_node, DijkstraProjection(result_.graph, new_node),
+                       options_.closures.candidates);
   }
   closer_.Close(new_node, candidates);
 }

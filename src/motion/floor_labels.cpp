@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "masked_mapper/log/carmen_line.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -15,7 +15,7 @@
 #include <cstdio>
 #include <string>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/segment_index.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -13,9 +13,9 @@
 #include <optional>
 #include <string_view>
 
-#include "masked_mapper/log/did_you_mean.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/building_plans.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

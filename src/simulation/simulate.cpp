@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/random_generator.hpp"
 #include "masked_mapper/simulation/tour.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

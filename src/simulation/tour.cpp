@@ -8,8 +8,8 @@
 #include <queue>
 #include <utility>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/random_generator.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

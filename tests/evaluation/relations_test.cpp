@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "log/temporary_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

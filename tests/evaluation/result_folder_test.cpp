@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "export/sample_map.hpp"
 #include "masked_mapper/export/output_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

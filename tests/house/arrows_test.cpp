@@ -124,7 +124,7 @@ TEST(Arrows, EachPackageStopsAtItsDoor) {
       {"ceres/", {"optimization"}, kAny},
       {"glog/", {"optimization"}, kAny},
       {"octomap/", {"rendering", "export"}, 1},
-      {"yaml-cpp/", {"mapping"}, 1},
+      {"yaml-cpp/", {"text"}, 1},
       {"sqlite3.h", {"map_file", "log"}, 1},
       {"fastcdr/", {"log"}, 1},
       {"pcl/io/", {"export"}, 1},

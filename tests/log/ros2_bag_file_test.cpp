@@ -10,8 +10,8 @@
 
 #include "log/ros2_bag_writing.hpp"
 #include "log/temporary_file.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,7 +12,7 @@
 #include "log/bag_bytes.hpp"
 #include "log/temporary_file.hpp"
 #include "masked_mapper/geometry/angle.hpp"
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

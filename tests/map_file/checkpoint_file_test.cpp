@@ -10,9 +10,9 @@
 #include "export/sample_map.hpp"
 #include "mapping/ring_drive.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -53,7 +53,8 @@ class CheckpointFileTest : public testing::Test {
   MappingResult Map(bool resume, std::uint64_t break_at = 0) {
     CheckpointFile checkpoints(folder_ / "out", origin_, 1e-9, resume);
     Breaker breaker(break_at);
-    MappingResult map = MapLog(origin_.log, origin_.mask, origin_.options, breaker, &checkpoints);
+    MappingResult map =
+        MapLog(origin_.log, origin_.mask, origin_.options.mapping, breaker, &checkpoints);
     EXPECT_TRUE(breaker.warnings.empty()) << breaker.warnings.front();
     return map;
   }
@@ -105,7 +106,7 @@ TEST_F(CheckpointFileTest, AnotherRunIsRefused) {
   origin_.mask = "always";
   EXPECT_NE(Refusal().find("mask was openings, now it is always"), std::string::npos) << Refusal();
   origin_ = before;
-  origin_.options.matcher.min_score = 0.5;
+  origin_.options.mapping.closures.matcher.min_score = 0.5;
   EXPECT_NE(Refusal().find("matcher.min_score was 0.425, now it is 0.5"), std::string::npos)
       << Refusal();
   origin_ = before;

@@ -9,9 +9,9 @@
 #include "map_file/database.hpp"
 #include "map_file/schema.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/map_file/map_file_writer.hpp"
-#include "masked_mapper/mapping/option_table.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

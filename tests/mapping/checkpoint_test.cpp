@@ -29,8 +29,8 @@ FloorTimeline TwoFloors(const RingDrive& drive) {
   return floors;
 }
 
-Options OptionsFor(MotionSource source) {
-  Options options;
+MappingOptions OptionsFor(MotionSource source) {
+  MappingOptions options;
   options.motion.source = source;
   return options;
 }
@@ -56,7 +56,7 @@ Checkpoint Kept(MaskedMapper& mapper) {
   return checkpoint;
 }
 
-MappingResult Unbroken(const RingDrive& drive, const std::string& mask, const Options& options,
+MappingResult Unbroken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
                        const FloorTimeline& floors) {
   MaskedMapper mapper(mask, options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
@@ -64,7 +64,7 @@ MappingResult Unbroken(const RingDrive& drive, const std::string& mask, const Op
 }
 
 /// The same, but at each of `breaks` all is put away and taken up by another mapper.
-MappingResult Broken(const RingDrive& drive, const std::string& mask, const Options& options,
+MappingResult Broken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
                      const FloorTimeline& floors, const std::vector<std::size_t>& breaks) {
   auto mapper = std::make_unique<MaskedMapper>(mask, options, floors);
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
@@ -97,7 +97,7 @@ TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
       {"never", MotionSource::kOdometry, one_floor},
   };
   for (const auto& one : drives) {
-    const Options options = OptionsFor(one.source);
+    const MappingOptions options = OptionsFor(one.source);
     const MappingResult whole = Unbroken(drive, one.mask, options, one.floors);
     const MappingResult broken =
         Broken(drive, one.mask, options, one.floors,
@@ -112,14 +112,14 @@ TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
 
 TEST(Checkpoint, BeforeTheFirstScanIsACheckpointToo) {
   const RingDrive drive(0.3, 0.3);
-  const Options options = OptionsFor(MotionSource::kFused);
+  const MappingOptions options = OptionsFor(MotionSource::kFused);
   EXPECT_TRUE(SameMap(Unbroken(drive, "openings", options, {}),
                       Broken(drive, "openings", options, {}, {0})));
 }
 
 TEST(Checkpoint, DamageIsRefusedOrHarmless) {
   const RingDrive drive(0.6, 0.3);
-  const Options options = OptionsFor(MotionSource::kFused);
+  const MappingOptions options = OptionsFor(MotionSource::kFused);
   const FloorTimeline floors;
   MaskedMapper mapper("openings", options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_writer.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -85,7 +85,7 @@ TEST(SurveyLog, FloorsOfAFileStandForThoseOfTheLog) {
   for (int i = 0; i < 50; ++i) writer.Write(ScanAt(10.0 + 0.2 * i, 0.1 * i));
   writer.Close();
   const std::string file = TemporaryLog("floors.csv");
-  Options options;
+  MappingOptions options;
   options.floors.file = file;
 
   std::ofstream(file) << "t,label\n9,EG\n14,-\n15,OG\n";

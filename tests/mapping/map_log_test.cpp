@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "mapping/ring_drive.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/log/log_writer.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

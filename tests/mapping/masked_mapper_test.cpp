@@ -4,19 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "mapping/ring_drive.hpp"
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/loop_closure/open_revisits.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
 
-Options OptionsFor(MotionSource source) {
-  Options options;
+MappingOptions OptionsFor(MotionSource source) {
+  MappingOptions options;
   options.motion.source = source;
   return options;
 }
 
-MappingResult Map(const RingDrive& drive, const std::string& mask, const Options& options,
+MappingResult Map(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
                   const FloorTimeline& floors = {}) {
   MaskedMapper mapper(mask, options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
@@ -112,9 +112,9 @@ TEST(MaskedMapper, EveryClosureOfTheRingIsTrue) {
 TEST(MaskedMapper, AnyNumberOfThreadsGivesTheSameMap) {
   const RingDrive drive(1.25, 0.15);
   Options options = OptionsFor(MotionSource::kFused);
-  options.matcher.threads = 1;
+  options.closures.matcher.threads = 1;
   const MappingResult one = Map(drive, "always", options);
-  options.matcher.threads = 2;
+  options.closures.matcher.threads = 2;
   const MappingResult two = Map(drive, "always", options);
   ASSERT_EQ(one.trajectory.size(), two.trajectory.size());
   for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
@@ -168,10 +168,10 @@ TEST(MaskedMapper, OneScanIsAMap) {
 TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
   const RingDrive drive(2.3, 0.2);
   for (const double most_m : {0.2, 0.0}) {
-    Options options;
+    MappingOptions options;
     options.motion.source = MotionSource::kFused;
-    options.validator.sure_loop_trace = 0.0;  // leaves more to the end
-    options.polish.most_m = most_m;
+    options.closures.validator.sure_loop_trace = 0.0;  // leaves more to the end
+    options.closures.polish.most_m = most_m;
     const FloorTimeline floors;
     MaskedMapper mapper("openings", options, floors);
     for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
@@ -214,7 +214,7 @@ TEST(MaskedMapper, ACorridorPassedAgainIsClosedBetweenItsMaskedPlaces) {
   std::size_t offered = 0;
   for (const double distance_m : {0.0, 2.0}) {
     Options options = OptionsFor(MotionSource::kFused);
-    options.polish.revisits.distance_m = distance_m;
+    options.closures.polish.revisits.distance_m = distance_m;
     const MappingResult map = Map(drive, "openings", options);
     const std::vector<Node>& nodes = map.graph.nodes();
     int between_scans = 0;
@@ -225,7 +225,7 @@ TEST(MaskedMapper, ACorridorPassedAgainIsClosedBetweenItsMaskedPlaces) {
       ++between_scans;
       EXPECT_EQ(attempt.state, ClosureState::kValidated) << attempt.reason;
       EXPECT_GT(attempt.a, attempt.b);
-      EXPECT_GT(attempt.score, options.matcher.min_score);
+      EXPECT_GT(attempt.score, options.closures.matcher.min_score);
       const Pose2 error = Between(attempt.T_a_b.mean, Between(truth_at(a), truth_at(b)));
       EXPECT_LT(std::hypot(error.x, error.y), 0.1) << "m";
       EXPECT_LT(RadToDeg(std::abs(error.theta)), 1.0) << "deg";

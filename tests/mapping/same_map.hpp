@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "motion/floor_checks.hpp"
 #include "motion/synthetic_drive.hpp"
 

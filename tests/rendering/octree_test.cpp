@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/log/input_error.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

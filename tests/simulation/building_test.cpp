@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/building_plans.hpp"
 #include "masked_mapper/simulation/segment_index.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "masked_mapper/log/input_error.hpp"
 #include "masked_mapper/simulation/building_plans.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "masked_mapper/export/summary_file.hpp"
-#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 
 namespace masked_mapper {

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "masked_mapper/mapping/drives.hpp"
-#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 
 namespace masked_mapper {

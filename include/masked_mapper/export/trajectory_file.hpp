@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "masked_mapper/mapping/mapping_result.hpp"
+#include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/mapping/mapping_result.hpp"
-#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/options/options.hpp"
 
 namespace masked_mapper {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
-#include "masked_mapper/mapping/mapping_result.hpp"
 
 namespace masked_mapper {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
@@ -28,7 +28,7 @@ struct LogSurvey {
 
 /// Throws InputError when the log cannot be read or holds no scan, or its file of floors is not one
 /// of this log.
-LogSurvey SurveyLog(const std::string& path, const Options& options);
+LogSurvey SurveyLog(const std::string& path, const MappingOptions& options);
 
 /// What `options.source` comes to for this log. Throws InputError when wheels are asked for and the
 /// log has none; `path` is for the message.

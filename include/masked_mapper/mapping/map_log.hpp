@@ -4,10 +4,10 @@
 
 #include <string>
 
+#include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/map/progress_sink.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
-#include "masked_mapper/mapping/mapping_result.hpp"
-#include "masked_mapper/mapping/options.hpp"
-#include "masked_mapper/mapping/progress_sink.hpp"
+#include "masked_mapper/mapping/mapping_options.hpp"
 
 namespace masked_mapper {
 
@@ -15,7 +15,8 @@ namespace masked_mapper {
 /// no scan, a mask expression that is none. With `checkpoints`, goes on from the one in store, if
 /// there is one of the same log, mask and options, and keeps others on the way; also one when
 /// `progress` throws. The map is the same with and without; its seconds are those of this run.
-MappingResult MapLog(const std::string& path, const std::string& mask, const Options& options,
-                     ProgressSink& progress, CheckpointStore* checkpoints = nullptr);
+MappingResult MapLog(const std::string& path, const std::string& mask,
+                     const MappingOptions& options, ProgressSink& progress,
+                     CheckpointStore* checkpoints = nullptr);
 
 }  // namespace masked_mapper

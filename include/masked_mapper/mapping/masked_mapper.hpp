@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
-#include "masked_mapper/mapping/loop_closer.hpp"
-#include "masked_mapper/mapping/mapping_result.hpp"
-#include "masked_mapper/mapping/options.hpp"
+#include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 
@@ -20,7 +20,7 @@ class MaskedMapper {
  public:
   /// `floors` says where the robot was when; it outlives the mapper.
   /// Throws InputError when `mask` is not a mask expression.
-  MaskedMapper(const std::string& mask, const Options& options, const FloorTimeline& floors);
+  MaskedMapper(const std::string& mask, const MappingOptions& options, const FloorTimeline& floors);
 
   /// Observations in order of stamps.
   void Observe(const Observation& observation);
@@ -51,7 +51,7 @@ class MaskedMapper {
   void CloseLoops(NodeId new_node);
   void RecordScan(const LaserScan& scan, const FloorInterval& interval);
 
-  Options options_;
+  MappingOptions options_;
   const FloorTimeline& floors_;
   MotionEstimator motion_;
   std::unique_ptr<Mask> mask_;

@@ -9,16 +9,10 @@
 #include "masked_mapper/motion/gyro_bias.hpp"
 #include "masked_mapper/motion/scan_odometry.hpp"
 #include "masked_mapper/motion/wheel_noise.hpp"
+#include "masked_mapper/sensor/motion_source.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
-
-enum class MotionSource {
-  kAuto,  ///< fused where scans come often enough, else the wheels; scans where there are no wheels
-  kOdometry,  ///< wheels alone, as in the paper
-  kScans,     ///< scans alone: wheels are not looked at
-  kFused,     ///< wheels guess, scans correct
-};
 
 /// What a robot may do between two scans when no wheels tell.
 struct WheellessOptions {

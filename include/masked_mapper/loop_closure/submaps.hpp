@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the robot saw around a node, as a local map in the node's frame: the scans kept shortly
+// before and after it, placed by the motion path. A closure is refined against it below the size of
+// any cell, where a single sparse scan would leave centimetres. Ours; the paper matches single
+// scans.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/scan_matching/local_map.hpp"
+
+namespace masked_mapper {
+
+struct SubmapOptions {
+  double half_length_m = 3.0;      ///< travel before and after the node
+  double min_inlier_share = 0.65;  ///< of a scan that fits
+  double max_correction_m = 0.4;   ///< a refinement that moves farther is not one
+  double max_correction_deg = 4.0;
+  double sigma_floor_m = 0.01;  ///< the motion path within a submap is not perfect
+  double sigma_floor_deg = 0.05;
+  double prior_weight = 0.05;  ///< say of the coarse match, beside the points'
+  std::size_t cached = 48;     ///< submaps kept
+  LocalMapOptions map;
+};
+
+/// A match refined; `inlier_share` of the scan's points agree with the submap.
+struct SubmapMatch {
+  UncertainPose2 T_node_robot;
+  double inlier_share = 0.0;
+};
+
+class Submaps {
+ public:
+  /// `result` is the map in the making; it outlives this.
+  Submaps(const SubmapOptions& options, const MappingResult& result)
+      : options_(options), result_(result) {}
+
+  /// The pose of a scan in the frame of `node`, from a coarse match. Empty when the scan does not
+  /// fit the node's surroundings.
+  std::optional<SubmapMatch> Refine(NodeId node, const ScanPoints& points_in_robot,
+                                    const UncertainPose2& T_node_robot);
+
+  /// What was seen at `node`, in its frame: its own scan, or, of an odometry-only node, the scan
+  /// kept nearest to it. Null when none was kept there.
+  ScanPoints::ConstPtr PointsAt(NodeId node) const;
+
+  /// The points of the node's submap, in its frame: what was seen from the way to it and on, so
+  /// that a scan that looks the other way finds it, too. Never null; empty when none was kept.
+  ScanPoints::ConstPtr PointsAround(NodeId node) const;
+
+ private:
+  const LocalMap& SubmapOf(NodeId node);
+  std::vector<LocalMap::PosedPoints> ScansAround(NodeId node) const;
+  LocalMap Build(NodeId node) const;
+
+  SubmapOptions options_;
+  const MappingResult& result_;
+  std::list<NodeId> recently_used_;  ///< most recent first
+  struct Entry {
+    LocalMap map;
+    std::list<NodeId>::iterator place;
+    bool is_complete = false;  ///< the drive had gone on far enough when it was built
+  };
+  std::map<NodeId, Entry> submaps_;
+};
+
+}  // namespace masked_mapper

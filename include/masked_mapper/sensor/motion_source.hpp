@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which sensors tell how the robot moved.
+#pragma once
+
+namespace masked_mapper {
+
+enum class MotionSource {
+  kAuto,  ///< fused where scans come often enough, else the wheels; scans where there are no wheels
+  kOdometry,  ///< wheels alone, as in the paper
+  kScans,     ///< scans alone: wheels are not looked at
+  kFused,     ///< wheels guess, scans correct
+};
+
+}  // namespace masked_mapper

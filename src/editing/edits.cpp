@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/editing/edits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "masked_mapper/map/drives.hpp"
+#include "masked_mapper/map/trajectory.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/yaml_tree.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kStampTolerance = 0.5;  // s
+/// Of a guess by hand: somebody who points at a map.
+constexpr double kGuessSigmaM = 0.7;
+constexpr double kGuessSigmaDeg = 7.0;
+
+std::string Short(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+/// One line of the file: its name, and its fields, each of which must be asked for.
+class EditLine {
+ public:
+  EditLine(const std::string& name, const YamlTree& tree) : name_(name), line_(tree.line) {
+    if (tree.kind != YamlTree::Kind::kSection || tree.entries.size() != 1) {
+      Fail("expected one edit, such as `- forbid_closure: {from: 90.0, to: 14.0}`");
+    }
+    const YamlTree::Entry& entry = tree.entries.front();
+    line_ = entry.line;
+    what_ = entry.key;
+    if (entry.tree.kind != YamlTree::Kind::kSection) Fail(what_ + " needs its fields");
+    for (const YamlTree::Entry& field : entry.tree.entries) {
+      if (!fields_.emplace(field.key, &field.tree).second) Fail(field.key + " is given twice");
+    }
+  }
+
+  const std::string& what() const { return what_; }
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw InputError(name_ + ":" + std::to_string(line_) + ": " + message);
+  }
+
+  bool Has(const std::string& field) const { return fields_.count(field) != 0; }
+
+  std::string Word(const std::string& field) {
+    const YamlTree& tree = Take(field);
+    if (tree.kind != YamlTree::Kind::kValue || tree.value.empty()) {
+      Fail(what_ + ": " + field + " must be a word");
+    }
+    return tree.value;
+  }
+
+  double Number(const std::string& field) { return NumberOf(Take(field), field); }
+
+  std::vector<double> Numbers(const std::string& field, std::size_t count) {
+    const YamlTree& tree = Take(field);
+    if (tree.kind != YamlTree::Kind::kList || tree.list.size() != count) {
+      Fail(what_ + ": " + field + " must be a list of " + std::to_string(count) + " numbers");
+    }
+    std::vector<double> numbers;
+    for (const YamlTree& item : tree.list) numbers.push_back(NumberOf(item, field));
+    return numbers;
+  }
+
+  void RequireAllTaken() const {
+    for (const auto& [field, tree] : fields_) {
+      if (std::find(taken_.begin(), taken_.end(), field) == taken_.end()) {
+        Fail(what_ + " has no field `" + field + "`");
+      }
+    }
+  }
+
+ private:
+  const YamlTree& Take(const std::string& field) {
+    const auto found = fields_.find(field);
+    if (found == fields_.end()) Fail(what_ + " needs `" + field + "`");
+    taken_.push_back(field);
+    return *found->second;
+  }
+
+  double NumberOf(const YamlTree& tree, const std::string& field) const {
+    char* end = nullptr;
+    const double number =
+        tree.kind == YamlTree::Kind::kValue ? std::strtod(tree.value.c_str(), &end) : 0.0;
+    if (end == nullptr || end == tree.value.c_str() || *end != '\0' || !std::isfinite(number)) {
+      Fail(what_ + ": " + field + " must be a number");
+    }
+    return number;
+  }
+
+  std::string name_;
+  std::size_t line_;
+  std::string what_;
+  std::map<std::string, const YamlTree*> fields_;
+  std::vector<std::string> taken_;
+};
+
+class Editor {
+ public:
+  Editor(const LoopClosureOptions& options, MappingResult& map) : options_(options), map_(map) {}
+
+  void Apply(EditLine& edit) {
+    const std::vector<std::pair<std::string, std::function<std::string(EditLine&)>>> edits = {
+        {"add_closure", [this](EditLine& line) { return AddClosure(line); }},
+        {"forbid_closure", [this](EditLine& line) { return ForbidClosure(line); }},
+        {"name_floor", [this](EditLine& line) { return NameFloor(line); }},
+        {"pin_elevation", [this](EditLine& line) { return PinElevation(line); }},
+        {"same_floor", [this](EditLine& line) { return SameFloor(line); }},
+    };
+    std::vector<std::string> names;
+    for (const auto& [name, apply] : edits) {
+      if (name == edit.what()) {
+        map_.warnings.push_back("edited: " + apply(edit));
+        return;
+      }
+      names.push_back(name);
+    }
+    edit.Fail("unknown edit `" + edit.what() + "`" + DidYouMean(edit.what(), names));
+  }
+
+  void Solve() {
+    if (!pulled_) return;
+    Optimize(options_.optimizer.solver, map_.graph);
+    BendTrajectory(map_.graph, map_.trajectory);
+  }
+
+ private:
+  /// A scan of the log and the node that it hangs on.
+  struct Place {
+    std::size_t scan = 0;
+    NodeId node = 0;
+    Pose2 T_node_robot;
+  };
+
+  const Node& NodeOf(NodeId id) const { return map_.graph.nodes()[static_cast<std::size_t>(id)]; }
+
+  Place PlaceAt(std::size_t scan) const {
+    const TrajectoryPose& pose = map_.trajectory[scan];
+    return {scan, pose.node_before,
+            Between(NodeOf(pose.node_before).T_odom_robot, pose.T_odom_robot)};
+  }
+
+  std::size_t ScanAt(double stamp, const EditLine& edit) const {
+    std::optional<std::size_t> nearest;
+    double smallest = kStampTolerance;
+    for (std::size_t i = 0; i < map_.trajectory.size(); ++i) {
+      const double off = std::abs(map_.trajectory[i].stamp - stamp);
+      if (off > smallest || (nearest && off == smallest)) continue;
+      smallest = off;
+      nearest = i;
+    }
+    if (!nearest) edit.Fail("no scan within half a second of stamp " + Short(stamp));
+    return *nearest;
+  }
+
+  FloorId FloorNamed(const std::string& label, const EditLine& edit) const {
+    std::vector<std::string> labels;
+    for (const Floor& floor : map_.graph.floors()) labels.push_back(floor.label);
+    const auto found = std::find(labels.begin(), labels.end(), label);
+    if (found == labels.end()) {
+      std::string all;
+      for (const std::string& known : labels) all += (all.empty() ? "" : ", ") + known;
+      edit.Fail("the map has no floor `" + label + "`, it has " + all);
+    }
+    return static_cast<FloorId>(found - labels.begin());
+  }
+
+  static UncertainPose2 Uncertain(const std::vector<double>& pose, double sigma_m,
+                                  double sigma_deg) {
+    UncertainPose2 T;
+    T.mean = {pose[0], pose[1], WrapAngle(DegToRad(pose[2]))};
+    const double sigma_rad = DegToRad(sigma_deg);
+    T.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
+    return T;
+  }
+
+  std::string AddClosure(EditLine& edit) {
+    const double from_stamp = edit.Number("from");
+    const double to_stamp = edit.Number("to");
+    std::size_t from = ScanAt(from_stamp, edit);
+    std::size_t to = ScanAt(to_stamp, edit);
+    ClosureAttempt attempt;
+    attempt.state = ClosureState::kValidated;
+    attempt.reason = kAddedByHand;
+    UncertainPose2 T_from_to;
+    if (edit.Has("transform")) {
+      const std::vector<double> sigma =
+          edit.Has("sigma") ? edit.Numbers("sigma", 2) : std::vector<double>{0.05, 0.5};
+      if (sigma[0] <= 0.0 || sigma[1] <= 0.0) edit.Fail("sigma must be above zero");
+      T_from_to = Uncertain(edit.Numbers("transform", 3), sigma[0], sigma[1]);
+      edit.RequireAllTaken();
+    } else {
+      UncertainPose2 guess;
+      if (edit.Has("guess")) {
+        guess = Uncertain(edit.Numbers("guess", 3), kGuessSigmaM, kGuessSigmaDeg);
+      } else {
+        const Pose2 T =
+            Between(map_.trajectory[from].T_world_robot, map_.trajectory[to].T_world_robot);
+        guess = Uncertain({T.x, T.y, RadToDeg(T.theta)}, kGuessSigmaM, kGuessSigmaDeg);
+      }
+      edit.RequireAllTaken();
+      const Match match = MatchScans(from, to, guess, edit);
+      from = match.from;
+      to = match.to;
+      T_from_to = match.T_from_to;
+      attempt.score = match.score;
+    }
+    Join(PlaceAt(from), PlaceAt(to), T_from_to, attempt, edit);
+    return "a closure between stamps " + Short(from_stamp) + " and " + Short(to_stamp);
+  }
+
+  void Join(const Place& from, const Place& to, const UncertainPose2& T_from_to,
+            ClosureAttempt attempt, const EditLine& edit) {
+    if (NodeOf(from.node).floor != NodeOf(to.node).floor) {
+      edit.Fail("the two stamps are on different floors");
+    }
+    if (from.node == to.node) edit.Fail("the two stamps are at one node of the graph");
+    // From node to node, by way of the two scans; the little motion in between is taken as exact.
+    UncertainPose2 T_a_b = UncertainPose2{from.T_node_robot, Eigen::Matrix3d::Zero()} * T_from_to *
+                           UncertainPose2{Inverse(to.T_node_robot), Eigen::Matrix3d::Zero()};
+    NodeId a = from.node;
+    NodeId b = to.node;
+    if (a < b) {  // a is the newer one everywhere
+      std::swap(a, b);
+      T_a_b = Inverse(T_a_b);
+    }
+    map_.graph.AddEdge({a, b, T_a_b, EdgeKind::kClosure});
+    NoteJoined(DriveOfNode(map_, a), DriveOfNode(map_, b));
+    attempt.a = a;
+    attempt.b = b;
+    attempt.T_a_b = T_a_b;
+    map_.attempts.push_back(std::move(attempt));
+    pulled_ = true;
+  }
+
+  /// A drive that was a piece of its own is one no more.
+  void NoteJoined(std::size_t newer, std::size_t older) {
+    if (newer == older) return;
+    Drive& drive = map_.drives[std::max(newer, older)];
+    const std::string stale = drive.log + ": stays a piece of its own";
+    const auto is_stale = [&](const std::string& warning) {
+      return warning.compare(0, stale.size(), stale) == 0;
+    };
+    const auto gone = std::remove_if(map_.warnings.begin(), map_.warnings.end(), is_stale);
+    if (gone == map_.warnings.end()) return;
+    map_.warnings.erase(gone, map_.warnings.end());
+    drive.reason = "joined by hand";
+  }
+
+  struct Match {
+    std::size_t from = 0;  ///< the scans that were matched, the kept ones next to those asked for
+    std::size_t to = 0;
+    UncertainPose2 T_from_to;
+    double score = 0.0;
+  };
+
+  /// The kept scan nearest to a scan of the log.
+  const KeptScan& KeptNear(std::size_t scan, const EditLine& edit) const {
+    const KeptScan* nearest = nullptr;
+    for (const KeptScan& kept : map_.kept_scans) {
+      const double off = std::abs(kept.scan.stamp - map_.trajectory[scan].stamp);
+      if (nearest == nullptr || off < std::abs(nearest->scan.stamp - map_.trajectory[scan].stamp)) {
+        nearest = &kept;
+      }
+    }
+    if (nearest == nullptr) edit.Fail("the map has no scans to match");
+    return *nearest;
+  }
+
+  Match MatchScans(std::size_t from, std::size_t to, const UncertainPose2& T_from_to_guess,
+                   const EditLine& edit) const {
+    const KeptScan& reference = KeptNear(from, edit);
+    const KeptScan& query = KeptNear(to, edit);
+    const auto offset = [&](std::size_t scan, const KeptScan& kept) {
+      return Between(map_.trajectory[scan].T_odom_robot,
+                     map_.trajectory[kept.trajectory_index].T_odom_robot);
+    };
+    UncertainPose2 guess = T_from_to_guess;
+    guess.mean = Inverse(offset(from, reference)) * guess.mean * offset(to, query);
+    MatcherOptions options = options_.matcher;
+    options.threads = 1;
+    const MatchResult result =
+        JointMatcher(options)
+            .Match({{0, PointsInRobot(reference.scan), PointsInRobot(query.scan), guess}})
+            .front();
+    if (result.outcome != MatchOutcome::kMatched) {
+      edit.Fail("the scans at these stamps do not match near the guess (score below " +
+                Short(options.min_score) + ")");
+    }
+    return {reference.trajectory_index, query.trajectory_index, result.T_reference_query,
+            result.score};
+  }
+
+  std::string ForbidClosure(EditLine& edit) {
+    const double from = edit.Number("from");
+    const double to = edit.Number("to");
+    edit.RequireAllTaken();
+    // Stamps that were copied are met exactly; others by what is near.
+    std::size_t removed = RemoveClosures(from, to, 1e-3);
+    if (removed == 0) removed = RemoveClosures(from, to, kStampTolerance);
+    if (removed == 0) {
+      edit.Fail("no closure between stamps " + Short(from) + " and " + Short(to) +
+                " (closures.csv lists them: t_a, t_b, state validated)");
+    }
+    pulled_ = true;
+    return "no closure between stamps " + Short(from) + " and " + Short(to);
+  }
+
+  std::size_t RemoveClosures(double from, double to, double tolerance_s) {
+    const auto is_near = [&](NodeId node, double stamp) {
+      return std::abs(NodeOf(node).stamp - stamp) <= tolerance_s;
+    };
+    std::size_t removed = 0;
+    for (std::size_t i = map_.graph.edges().size(); i-- > 0;) {
+      const Edge edge = map_.graph.edges()[i];
+      if (edge.kind != EdgeKind::kClosure) continue;
+      if (!(is_near(edge.from, from) && is_near(edge.to, to)) &&
+          !(is_near(edge.from, to) && is_near(edge.to, from))) {
+        continue;
+      }
+      map_.graph.RemoveEdge(static_cast<EdgeId>(i));
+      ++removed;
+      for (ClosureAttempt& attempt : map_.attempts) {
+        if (attempt.state != ClosureState::kValidated || attempt.a != edge.from ||
+            attempt.b != edge.to) {
+          continue;
+        }
+        attempt.state = ClosureState::kAuditedOut;
+        attempt.reason = kForbiddenByHand;
+      }
+    }
+    return removed;
+  }
+
+  std::string NameFloor(EditLine& edit) {
+    const std::string label = edit.Word("floor");
+    const std::string name = edit.Word("name");
+    edit.RequireAllTaken();
+    const FloorId floor = FloorNamed(label, edit);
+    const bool is_word = std::all_of(name.begin(), name.end(), [](char c) {
+      return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '.' || c == '-';
+    });
+    if (!is_word || name == "." || name == ".." || name.size() > 100) {
+      edit.Fail("a floor's name is made of letters, digits, `_`, `.` and `-`");
+    }
+    for (std::size_t i = 0; i < map_.graph.floors().size(); ++i) {
+      if (static_cast<FloorId>(i) != floor && map_.graph.floors()[i].label == name) {
+        edit.Fail("another floor is called `" + name + "` already");
+      }
+    }
+    Rebuild([&](FloorId id, Floor& changed) {
+      if (id == floor) {
+        changed.label = name;
+        changed.label_given = true;
+      }
+      return id;
+    });
+    return "floor " + label + " is called " + name;
+  }
+
+  std::string PinElevation(EditLine& edit) {
+    const std::string label = edit.Word("floor");
+    const double elevation = edit.Number("elevation_m");
+    edit.RequireAllTaken();
+    map_.graph.SetElevation(FloorNamed(label, edit), elevation, 0.0, true);
+    return "floor " + label + " is at " + Short(elevation) + " m";
+  }
+
+  std::string SameFloor(EditLine& edit) {
+    const std::string label = edit.Word("floor");
+    const std::string as = edit.Word("as");
+    edit.RequireAllTaken();
+    const FloorId gone = FloorNamed(label, edit);
+    const FloorId stays = FloorNamed(as, edit);
+    if (gone == stays) edit.Fail("these are one floor already");
+    Rebuild([&](FloorId id, Floor&) { return id == gone ? stays : id; });
+    return "floor " + label + " is the same as " + as;
+  }
+
+  /// The same graph with other floors: `change` may alter a floor, and says which it becomes;
+  /// floors that became another are gone.
+  void Rebuild(const std::function<FloorId(FloorId, Floor&)>& change) {
+    const PoseGraph& old = map_.graph;
+    std::vector<FloorId> becomes;
+    std::vector<FloorId> new_id(old.floors().size(), -1);
+    PoseGraph graph;
+    for (std::size_t i = 0; i < old.floors().size(); ++i) {
+      Floor floor = old.floors()[i];
+      becomes.push_back(change(static_cast<FloorId>(i), floor));
+      if (becomes.back() == static_cast<FloorId>(i)) new_id[i] = graph.AddFloor(std::move(floor));
+    }
+    const auto renamed = [&](FloorId id) {
+      return new_id[static_cast<std::size_t>(becomes[static_cast<std::size_t>(id)])];
+    };
+    for (Node node : old.nodes()) {
+      node.floor = renamed(node.floor);
+      graph.AddNode(std::move(node));
+    }
+    for (const Edge& edge : old.edges()) graph.AddEdge(edge);
+    for (TrajectoryPose& pose : map_.trajectory) pose.floor = renamed(pose.floor);
+    map_.graph = std::move(graph);
+  }
+
+  const LoopClosureOptions& options_;
+  MappingResult& map_;
+  bool pulled_ = false;  ///< edges came or went
+};
+
+}  // namespace
+
+void ApplyEditsText(const std::string& name, const std::string& text,
+                    const LoopClosureOptions& options, MappingResult& map) {
+  const YamlTree tree = ParseYaml(name, text);
+  if (tree.kind == YamlTree::Kind::kEmpty) return;
+  if (tree.kind != YamlTree::Kind::kList) {
+    throw InputError(name + ":" + std::to_string(tree.line) +
+                     ": expected a list of edits, each a line that starts with `- `");
+  }
+  MappingResult changed = map;
+  Editor editor(options, changed);
+  for (const YamlTree& item : tree.list) {
+    EditLine line(name, item);
+    editor.Apply(line);
+  }
+  editor.Solve();
+  map = std::move(changed);
+}
+
+void ApplyEdits(const std::string& path, const LoopClosureOptions& options, MappingResult& map) {
+  ApplyEditsText(path, ReadSmallFile(path, "list of edits"), options, map);
+}
+
+}  // namespace masked_mapper

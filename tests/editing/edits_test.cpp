@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/editing/edits.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mapping/ring_drive.hpp"
+#include "mapping/same_map.hpp"
+#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper/text/input_error.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Once round and a bit, with wheels that drift, and not a closure.
+class EditsTest : public testing::Test {
+ protected:
+  EditsTest() : drive_(1.2, 0.5) {
+    options_.motion.source = MotionSource::kOdometry;
+    floors_.levels.push_back({"up", 3.0, 0.1, true, true});
+    MaskedMapper mapper("never", options_, floors_);
+    for (const LaserScan& scan : drive_.scans) mapper.Observe(scan);
+    map_ = mapper.Finish();
+  }
+
+  /// Of the end of the drive, as seen from the same place a round before, m.
+  double LastError() const {
+    return Distance(
+        Between(map_.trajectory[OldScan()].T_world_robot, map_.trajectory.back().T_world_robot),
+        Between(drive_.truth[OldScan()], drive_.truth.back()));
+  }
+
+  /// The scan nearest to where the drive ends, of its first half.
+  std::size_t OldScan() const {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < drive_.truth.size() / 2; ++i) {
+      if (Distance(drive_.truth[i], drive_.truth.back()) <
+          Distance(drive_.truth[best], drive_.truth.back())) {
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  std::string Stamps() const {
+    return "from: " + std::to_string(map_.trajectory.back().stamp) +
+           ", to: " + std::to_string(map_.trajectory[OldScan()].stamp);
+  }
+
+  std::string TruePose() const {
+    const Pose2 T = Between(drive_.truth.back(), drive_.truth[OldScan()]);
+    return "[" + std::to_string(T.x) + ", " + std::to_string(T.y) + ", " +
+           std::to_string(RadToDeg(T.theta)) + "]";
+  }
+
+  void Edit(const std::string& text) { ApplyEditsText("edits.yaml", text, options_, map_); }
+
+  RingDrive drive_;
+  FloorTimeline floors_;
+  Options options_;
+  MappingResult map_;
+};
+
+TEST_F(EditsTest, AClosureWithItsTransformMendsTheMap) {
+  const double before = LastError();
+  ASSERT_GT(before, 1.0) << "m";
+  Edit("- add_closure: {" + Stamps() + ", transform: " + TruePose() + "}\n");
+  EXPECT_LT(LastError(), 0.2) << "m";
+  EXPECT_EQ(map_.graph.edges().back().kind, EdgeKind::kClosure);
+  EXPECT_EQ(map_.attempts.back().reason, "added by hand");
+  EXPECT_GT(map_.attempts.back().a, map_.attempts.back().b);
+  EXPECT_EQ(map_.warnings.back().rfind("edited: a closure between", 0), 0U);
+}
+
+TEST_F(EditsTest, AClosureIsMatchedFromAGuess) {
+  const Pose2 T = Between(drive_.truth.back(), drive_.truth[OldScan()]);
+  Edit("- add_closure: {" + Stamps() + ", guess: [" + std::to_string(T.x + 0.4) + ", " +
+       std::to_string(T.y - 0.3) + ", " + std::to_string(RadToDeg(T.theta) + 4.0) + "]}\n");
+  EXPECT_LT(LastError(), 0.25) << "m";
+  EXPECT_GT(map_.attempts.back().score, options_.matcher.min_score);
+}
+
+TEST_F(EditsTest, AForbiddenClosureIsOut) {
+  const MappingResult before = map_;
+  Edit("- add_closure: {" + Stamps() + ", transform: [1, 2, 30]}\n");
+  EXPECT_FALSE(SameMap(before, map_));
+  const ClosureAttempt& added = map_.attempts.back();
+  const auto stamp = [&](NodeId node) {
+    return std::to_string(map_.graph.nodes()[static_cast<std::size_t>(node)].stamp);
+  };
+  Edit("- forbid_closure: {from: " + stamp(added.b) + ", to: " + stamp(added.a) + "}\n");
+  EXPECT_EQ(map_.attempts.back().state, ClosureState::kAuditedOut);
+  for (std::size_t i = 0; i < map_.trajectory.size(); ++i) {
+    EXPECT_LT(Distance(map_.trajectory[i].T_world_robot, before.trajectory[i].T_world_robot), 1e-3);
+  }
+}
+
+TEST_F(EditsTest, FloorsAreNamedPinnedAndJoined) {
+  Edit(
+      "- name_floor: {floor: up, name: attic}\n- pin_elevation: {floor: attic, elevation_m: "
+      "4.5}\n");
+  EXPECT_EQ(map_.graph.floors()[1].label, "attic");
+  EXPECT_EQ(map_.graph.floors()[1].elevation, 4.5);
+  EXPECT_TRUE(map_.graph.floors()[1].elevation_measured);
+  Edit("- same_floor: {floor: \"0\", as: attic}\n");
+  ASSERT_EQ(map_.graph.floors().size(), 1U);
+  EXPECT_EQ(map_.graph.floors()[0].label, "attic");
+  for (const Node& node : map_.graph.nodes()) EXPECT_EQ(node.floor, 0);
+  for (const TrajectoryPose& pose : map_.trajectory) EXPECT_EQ(pose.floor, 0);
+}
+
+TEST_F(EditsTest, NoEditsChangeNothing) {
+  const MappingResult before = map_;
+  Edit("");
+  Edit("# nothing yet\n");
+  EXPECT_TRUE(SameMap(before, map_));
+}
+
+TEST_F(EditsTest, MistakesNameFileAndLineAndChangeNothing) {
+  const MappingResult before = map_;
+  const std::string good = "- name_floor: {floor: up, name: attic}\n";
+  for (const auto& [text, said] : std::vector<std::pair<std::string, std::string>>{
+           {"- ad_closure: {from: 1, to: 2}\n", "did you mean `add_closure`"},
+           {"- add_closure: {from: 1}\n", "needs `to`"},
+           {"- add_closure: {from: 1, to: x}\n", "must be a number"},
+           {"- add_closure: {from: 1, to: .nan}\n", "must be a number"},
+           {"- add_closure: {from: 1, to: 99999}\n", "no scan within"},
+           {"- add_closure: {from: 1, to: 1.1, transform: [0, 0, 0]}\n", "one node"},
+           {"- add_closure: {from: 1, to: 30, transform: [0, 0]}\n", "list of 3 numbers"},
+           {"- add_closure: {from: 1, to: 30, transform: [0, 0, 0], sigma: [0, 1]}\n",
+            "above zero"},
+           {"- add_closure: {from: 1, to: 30, gues: [0, 0, 0]}\n", "has no field `gues`"},
+           {"- add_closure: {from: 1, to: 30, guess: [900, 0, 0]}\n", "do not match"},
+           {"- forbid_closure: {from: 1, to: 30}\n", "no closure between"},
+           {"- name_floor: {floor: cellar, name: x}\n", "it has 0, attic"},
+           {"- name_floor: {floor: \"0\", name: attic}\n", "called `attic` already"},
+           {"- name_floor: {floor: \"0\", name: a/b}\n", "made of letters"},
+           {"- pin_elevation: {floor: \"0\", elevation_m: high}\n", "must be a number"},
+           {"- same_floor: {floor: \"0\", as: \"0\"}\n", "one floor already"},
+           {"- same_floor\n", "expected one edit"},
+           {"- same_floor: 3\n", "needs its fields"},
+           {"- {a: {}, b: {}}\n", "expected one edit"},
+           {"  - [\n", "not valid YAML"}}) {
+    try {
+      Edit(good + text);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("edits.yaml:", 0), 0U) << error.what();
+    }
+    EXPECT_TRUE(SameMap(before, map_));
+  }
+  EXPECT_THROW(Edit("a: 1\n"), InputError);
+  EXPECT_THROW(ApplyEdits("/nowhere/edits.yaml", options_, map_), InputError);
+}
+
+}  // namespace
+}  // namespace masked_mapper

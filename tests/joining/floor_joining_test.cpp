@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/joining/floor_joining.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mapping/ring_drive.hpp"
+#include "masked_mapper/mapping/masked_mapper.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Once round, a short while on a level not known, and on, on another not known.
+FloorTimeline ThreeVisits(const RingDrive& drive) {
+  const auto stamp = [&](double share) {
+    return drive.scans[static_cast<std::size_t>(share * static_cast<double>(drive.scans.size()))]
+        .stamp;
+  };
+  FloorTimeline floors;
+  floors.levels.push_back({"", 3.5, 3.5, false, false});
+  floors.levels.push_back({"", 7.0, 3.5, false, false});
+  floors.intervals.push_back({stamp(0.44), 0, true});
+  floors.intervals.push_back({stamp(0.445), 1, true});
+  floors.intervals.push_back({stamp(0.45), 1, false});
+  floors.intervals.push_back({stamp(0.50), 1, true});
+  floors.intervals.push_back({stamp(0.505), 2, true});
+  floors.intervals.push_back({stamp(0.51), 2, false});
+  for (FloorInterval& interval : floors.intervals) interval.travelled_m = 5.0;  // stairs
+  return floors;
+}
+
+MappingResult MapOf(const std::vector<LaserScan>& scans, const FloorTimeline& floors) {
+  MaskedMapper mapper("openings", {}, floors);
+  for (const LaserScan& scan : scans) mapper.Observe(scan);
+  return mapper.Finish();
+}
+
+TEST(JoinFloors, AFloorMetAgainIsOneFloor) {
+  const RingDrive drive(2.4, 0.2);
+  const FloorTimeline floors = ThreeVisits(drive);
+  ASSERT_TRUE(HasUnknownFloors(floors));
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {});
+  EXPECT_TRUE(joining.any_joined);
+  EXPECT_EQ(joining.notes.size(), 1u);
+  // The level in the middle was reached from the first, and is another.
+  ASSERT_EQ(joining.floors.levels.size(), 2u);
+  EXPECT_FALSE(HasUnknownFloors(joining.floors));
+  EXPECT_DOUBLE_EQ(joining.floors.levels[1].elevation, 3.5);
+  ASSERT_EQ(joining.floors.intervals.size(), floors.intervals.size());
+  for (std::size_t i = 0; i < floors.intervals.size(); ++i) {
+    EXPECT_EQ(joining.floors.intervals[i].level,
+              floors.intervals[i].level == 1 ? std::size_t{1} : std::size_t{0});
+    EXPECT_EQ(joining.floors.intervals[i].start, floors.intervals[i].start);
+  }
+}
+
+TEST(JoinFloors, AnotherFloorAtTheSamePlaceStaysApart) {
+  RingDrive drive(2.4, 0.2);
+  const FloorTimeline floors = ThreeVisits(drive);
+  // As wide a ring, but its corridors are wider to the other side and have other niches.
+  BoxScene other;
+  other.AddBox(-1.2, -1.2, 27.2, 19.2);
+  other.AddBox(2.0, 2.0, 24.0, 16.0);
+  for (double x = 3.0; x < 24.0; x += 5.3) other.AddBox(x, -1.2, x + 1.4, -0.5);
+  for (double y = 2.0; y < 16.0; y += 4.7) other.AddBox(26.4, y, 27.2, y + 1.9);
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    LaserScan& scan = drive.scans[i];
+    if (floors.At(scan.stamp).level != 2) continue;
+    const LaserScan seen =
+        other.Scan(Pose2{1.0, 1.0, 0.0} * drive.truth[i], 181, 270.0, &random, 0.01);
+    scan.ranges = seen.ranges;
+  }
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {});
+  EXPECT_FALSE(joining.any_joined);
+  EXPECT_EQ(joining.floors.levels.size(), 3u);
+  EXPECT_FALSE(HasUnknownFloors(joining.floors)) << "it was looked at, and is another";
+}
+
+TEST(JoinFloors, KnownFloorsAndEmptyMapsAreLeftAlone) {
+  const FloorTimeline one;
+  EXPECT_FALSE(HasUnknownFloors(one));
+  EXPECT_FALSE(JoinFloors({}, one, {}, {}).any_joined);
+  FloorTimeline unknown;
+  unknown.levels.push_back({"", 3.5, 3.5, false, false});
+  unknown.levels.push_back({"", 7.0, 3.5, false, false});
+  const FloorJoining joining = JoinFloors({}, unknown, {}, {});
+  EXPECT_FALSE(joining.any_joined);
+  EXPECT_EQ(joining.floors.levels.size(), 3u);
+}
+
+}  // namespace
+}  // namespace masked_mapper
