@@ -56,7 +56,7 @@ class EditsTest : public testing::Test {
 
   RingDrive drive_;
   FloorTimeline floors_;
-  Options options_;
+  LoopClosureOptions options_;
   MappingResult map_;
 };
 

@@ -34,7 +34,7 @@ MappingResult FirstLeg(const RingDrive& drive, std::size_t scans) {
 TEST(Submaps, RefineACoarseMatchToCentimetres) {
   const RingDrive drive(0.25, 0.0);
   const MappingResult map = FirstLeg(drive, 100);
-  Submaps submaps({}, {}, map);
+  Submaps submaps({}, map);
   const ScanPoints::ConstPtr points = PointsInRobot(drive.scans[53]);
   const Pose2 truth = Between(drive.truth[50], drive.truth[53]);
   UncertainPose2 coarse;
@@ -50,7 +50,7 @@ TEST(Submaps, RefineACoarseMatchToCentimetres) {
 TEST(Submaps, AScanOfAnotherPlaceIsNotForcedIn) {
   const RingDrive drive(0.25, 0.0);
   const MappingResult map = FirstLeg(drive, 100);
-  Submaps submaps({}, {}, map);
+  Submaps submaps({}, map);
   BoxScene other;
   other.AddBox(-4.0, -3.0, 5.0, 6.0);
   UncertainPose2 coarse;
@@ -70,7 +70,7 @@ TEST(Submaps, AnOdometryNodeSeesWhatTheScanKeptNearestSaw) {
   const ScanPoints::ConstPtr own = PointsInRobot(drive.scans[7]);
   node.points_in_robot = own;
   const NodeId with_scan = map.graph.AddNode(node);
-  const Submaps submaps({}, {}, map);
+  const Submaps submaps({}, map);
   EXPECT_EQ(submaps.PointsAt(with_scan), own);
   const ScanPoints::ConstPtr seen = submaps.PointsAt(id);
   const ScanPoints::ConstPtr kept = PointsInRobot(drive.scans[61]);
@@ -91,7 +91,7 @@ TEST(Submaps, TheSurroundingsAreWhatWasSeenFromTheWayToANodeAndOn) {
   MappingResult map = FirstLeg(drive, 100);  // straight, so that way and distance are the same
   SubmapOptions options;
   options.half_length_m = 1.13;
-  const Submaps submaps(options, {}, map);
+  const Submaps submaps(options, map);
   const Pose2& T_world_node = drive.truth[50];
   std::vector<std::pair<float, float>> expected;
   std::size_t scans = 0;
