@@ -13,6 +13,7 @@
 
 #include "database.hpp"
 #include "map_rows.hpp"
+#include "masked_mapper/geometry/covariance.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -73,11 +74,9 @@ class Reader {
     if (bytes.size() != kCovarianceBytes) Malformed(table, "a covariance of the wrong size");
     Eigen::Matrix3d covariance;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        covariance(i, j) = TakeNumber<double>(bytes);
-        if (!std::isfinite(covariance(i, j))) Malformed(table, "a covariance is not finite");
-      }
+      for (int j = 0; j < 3; ++j) covariance(i, j) = TakeNumber<double>(bytes);
     }
+    if (!IsCovariance(covariance)) Malformed(table, "a covariance that is none");
     return covariance;
   }
 

@@ -280,6 +280,35 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
   }
 }
 
+/// A map whose rows were changed by hand: the checksums are right, what they say may not be.
+void WriteChanged(const fs::path& path, const std::string& change) {
+  WriteMapFile({}, SampleMap(), path);
+  Database database(path, OpenMode::kWrite);
+  database.Run("PRAGMA foreign_keys = OFF");
+  database.Run(change);
+  database.Run("DELETE FROM content");
+  Seal(database);
+}
+
+// Finite numbers that no covariance has: a solve would find nothing to divide by.
+TEST(MapFileReader, RefusesCovariancesThatAreNone) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* table : {"edges", "attempts"}) {
+    for (const char* covariance : {
+             "x'000000000000F0BF' || substr(covariance, 9)",  // minus one m^2
+             "x'9C7500883CE4377E' || substr(covariance, 9)",  // 1e300
+             "substr(covariance, 1, 8) || x'000000000000F03F' || substr(covariance, 17)",
+         }) {
+      const fs::path path = folder / (std::to_string(number++) + ".mmap");
+      WriteChanged(path, std::string("UPDATE ") + table + " SET covariance = " + covariance +
+                             " WHERE id = 2");
+      EXPECT_NE(Refusal(path).find("a covariance that is none"), std::string::npos)
+          << table << ": " << covariance;
+    }
+  }
+}
+
 TEST(MapFileReader, RefusesTablesThatAreNotOurs) {
   const TestFolder folder;
   int number = 0;
