@@ -19,6 +19,7 @@
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
+#include "stored_options.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -124,16 +125,13 @@ class Reader {
   }
 
   void ReadOptions() {
+    StoredOptions stored;
     Statement rows(database_, "SELECT key, value FROM options ORDER BY id");
-    try {
-      while (rows.Next()) {
-        const std::string key(rows.Text());
-        SetOption("table options", key, std::string(rows.Text()), map_.origin.options);
-      }
-      CheckOptions(map_.origin.options);
-    } catch (const InputError& error) {
-      throw DatabaseError(error.what());
+    while (rows.Next()) {
+      std::string key(rows.Text());
+      stored.Add(std::move(key), std::string(rows.Text()));
     }
+    map_.origin.options = stored.Take(map_.left_aside);
   }
 
   void ReadRun() {
