@@ -34,6 +34,7 @@ struct ExportArguments {
   std::string file;
   std::string floor;
   std::string resolution;
+  std::vector<std::string> settings;
   std::string edits;
   bool force = false;
   HeightBand heights;
@@ -74,8 +75,25 @@ ExportFormat FormatNamed(const std::string& name) {
   throw InputError("export: --format must be one of " + all + ", all, not `" + name + "`");
 }
 
+/// Of a finished map only how it is drawn can still be chosen.
+void SetDrawing(const std::vector<std::string>& settings, Options& options) {
+  for (const std::string& setting : settings) {
+    SetOption(setting, options);  // first: a mistyped one deserves the better answer
+    const std::string key = setting.substr(0, setting.find('='));
+    if (!IsOfDrawing(key)) {
+      throw InputError("export: " + key + " has gone into the map already; --set is of grid.* and" +
+                       " octree.*");
+    }
+  }
+  CheckOptions(options);
+}
+
 SavedMap ReadMap(const ExportArguments& arguments) {
   SavedMap map = ReadMapFile(MapFileOf(arguments.map));
+  for (const std::string& line : map.left_aside) {
+    if (!arguments.quiet) std::cerr << "warning: " << arguments.map << ": " << line << "\n";
+  }
+  SetDrawing(arguments.settings, map.origin.options);
   if (!arguments.resolution.empty()) {
     SetOption("--resolution", "grid.resolution_m", arguments.resolution, map.origin.options);
   }
@@ -100,8 +118,13 @@ int ExportAll(const ExportArguments& arguments) {
   CheckOutputFolder(arguments.file, existing);
   const SavedMap map = ReadMap(arguments);
   OutputFolder folder(arguments.file, existing);
-  WriteMapFile(map.origin, map.result, folder.path() / "building.mmap");
-  WriteMap(map.result, DescriptionOf(map.origin, map.result), OptionsOf(map), folder.path());
+  WriteMapFile(map.origin, map.result, folder.path() / kMapFileName);
+  try {
+    WriteMap(map.result, DescriptionOf(map.origin, map.result), OptionsOf(map), folder.path());
+  } catch (const ExportError& error) {
+    if (error.is_too_large) throw InputError(error.what());
+    throw;
+  }
   folder.Commit();
   if (!arguments.quiet) std::cout << "all: " << arguments.file << "\n";
   return 0;
@@ -134,12 +157,7 @@ int RunExport(const ExportArguments& arguments) {
   return 0;
 }
 
-}  // namespace
-
-void AddExportCommand(CLI::App& program, Run& run) {
-  auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command =
-      program.add_subcommand("export", "Write a map in one format, from the saved map alone");
+void AddFlags(CLI::App* command, ExportArguments* arguments) {
   command->add_option("OUT", arguments->map, "what `map` wrote, or the building.mmap in it")
       ->required()
       ->type_name("OUT|MAP");
@@ -156,6 +174,11 @@ void AddExportCommand(CLI::App& program, Run& run) {
       ->add_option("--resolution", arguments->resolution,
                    "side of a cell or voxel, m; as mapped unless given")
       ->type_name("METRES");
+  command
+      ->add_option("--set", arguments->settings,
+                   "another grid.* or octree.* option than it was mapped with")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
   command->add_option("--zmin", arguments->heights.low_m, "leave out what is lower, m")
       ->type_name("METRES");
   command->add_option("--zmax", arguments->heights.high_m, "leave out what is higher, m")
@@ -166,16 +189,27 @@ void AddExportCommand(CLI::App& program, Run& run) {
       ->type_name("FILE");
   command->add_flag("--force", arguments->force, "of --format all: replace the map in FILE");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
-  command->footer(
-      "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
-      "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph);\n"
-      "all: everything that `map` writes, into a folder.\n"
-      "With nothing else asked for, the bytes are those that `map` wrote.\n\n"
-      "Examples:\n"
-      "  masked_mapper export out --format octomap -o coarse.bt --resolution 0.2\n"
-      "  masked_mapper export out/building.mmap --format grid --floor 2 -o second_floor.pgm\n"
-      "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
-      "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd");
+}
+
+constexpr const char* kFooter =
+    "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
+    "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph);\n"
+    "all: everything that `map` writes, into a folder.\n"
+    "With nothing else asked for, the bytes are those that `map` wrote.\n\n"
+    "Examples:\n"
+    "  masked_mapper export out --format octomap -o coarse.bt --resolution 0.2\n"
+    "  masked_mapper export out/building.mmap --format grid --floor 2 -o second_floor.pgm\n"
+    "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
+    "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd";
+
+}  // namespace
+
+void AddExportCommand(CLI::App& program, Run& run) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command =
+      program.add_subcommand("export", "Write a map in one format, from the saved map alone");
+  AddFlags(command, arguments.get());
+  command->footer(kFooter);
   command->callback([arguments, &run] { run = [arguments] { return RunExport(*arguments); }; });
 }
 

@@ -31,22 +31,8 @@ struct MapFacts {
   std::uint64_t kept_scans = 0;
   std::vector<std::pair<std::string, std::uint64_t>> edges;   ///< by kind
   std::vector<std::pair<std::string, std::uint64_t>> states;  ///< of attempts
-  std::vector<std::pair<std::string, std::string>> changed;   ///< options that are not the default
+  NamedValues changed;                                        ///< options that are not the default
 };
-
-std::vector<std::pair<std::string, std::string>> ChangedOptions(const Options& options) {
-  Options ours = options;
-  Options defaults;
-  const std::vector<OptionEntry> table = OptionTable(ours);
-  const std::vector<OptionEntry> default_table = OptionTable(defaults);
-  std::vector<std::pair<std::string, std::string>> changed;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].key == "threads") continue;
-    const std::string value = ValueText(table[i]);
-    if (value != ValueText(default_table[i])) changed.emplace_back(table[i].key, value);
-  }
-  return changed;
-}
 
 MapFacts FactsOf(const std::string& out_or_map) {
   MapFacts facts;
@@ -75,6 +61,8 @@ MapFacts FactsOf(const std::string& out_or_map) {
     ++facts.states[static_cast<std::size_t>(attempt.state)].second;
   }
   facts.changed = ChangedOptions(map.origin.options);
+  std::vector<std::string>& warnings = facts.summary.warnings;
+  warnings.insert(warnings.end(), map.left_aside.begin(), map.left_aside.end());
   return facts;
 }
 

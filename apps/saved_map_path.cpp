@@ -12,7 +12,7 @@ namespace masked_mapper {
 bool IsOutOrMap(const std::string& path) {
   // ROS 2 bags are folders and SQLite files as well.
   if (std::filesystem::is_directory(path)) {
-    return std::filesystem::exists(std::filesystem::path(path) / "building.mmap") ||
+    return std::filesystem::exists(std::filesystem::path(path) / kMapFileName) ||
            !Ros2BagFile::IsBag(path);
   }
   if (std::filesystem::path(path).extension() == ".db3") return false;
@@ -24,7 +24,7 @@ bool IsOutOrMap(const std::string& path) {
 
 std::filesystem::path MapFileOf(const std::string& out_or_map) {
   if (!std::filesystem::is_directory(out_or_map)) return out_or_map;
-  std::filesystem::path file = std::filesystem::path(out_or_map) / "building.mmap";
+  std::filesystem::path file = std::filesystem::path(out_or_map) / kMapFileName;
   if (!std::filesystem::exists(file)) {
     throw InputError(out_or_map + ": holds no map (no building.mmap in it)");
   }

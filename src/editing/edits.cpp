@@ -199,7 +199,10 @@ class Editor {
     if (edit.Has("transform")) {
       const std::vector<double> sigma =
           edit.Has("sigma") ? edit.Numbers("sigma", 2) : std::vector<double>{0.05, 0.5};
-      if (sigma[0] <= 0.0 || sigma[1] <= 0.0) edit.Fail("sigma must be above zero");
+      // Finer than a micrometre and coarser than a building nobody means.
+      for (const double part : sigma) {
+        if (!(part >= 1e-6 && part <= 1e4)) edit.Fail("sigma must be 0.000001 to 10000");
+      }
       T_from_to = Uncertain(edit.Numbers("transform", 3), sigma[0], sigma[1]);
       edit.RequireAllTaken();
     } else {

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/export/map_export.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <future>
+#include <new>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "masked_mapper/export/closures_file.hpp"
@@ -16,6 +21,7 @@
 #include "masked_mapper/export/report.hpp"
 #include "masked_mapper/export/trajectory_file.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -26,58 +32,198 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void WriteOctree(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids,
-                 const OctreeOptions& options, const std::filesystem::path& path) {
-  std::vector<FloorLayer> layers;
-  for (std::size_t i = 0; i < grids.size(); ++i) {
-    layers.push_back({&grids[i], graph.floors()[i].elevation});
-  }
-  WriteOctomap(*BuildOctree(layers, options), path);
-}
-
-void WriteFloors(const PoseGraph& graph, const std::vector<OccupancyGrid>& grids,
-                 const std::filesystem::path& folder) {
-  const std::vector<Colour> colours = FloorColours(graph.floors());
-  ColouredCloud building;
-  for (std::size_t i = 0; i < grids.size(); ++i) {
-    const Floor& floor = graph.floors()[i];
-    const ColouredCloud cloud =
-        Coloured(WallCloud(grids[i], floor.elevation, static_cast<std::uint32_t>(i)), colours);
-    const std::string stem = (folder / "floors" / floor.label).string();
-    WritePcd(cloud, stem + ".pcd");
-    WriteOccupancyGrid(grids[i], stem);
-    WriteG2o(graph, static_cast<FloorId>(i), stem + ".g2o");
-    building += cloud;
-  }
-  WritePcd(building, folder / "building.pcd");
-  WritePly(building, folder / "building.ply");
-}
-
-// Each drive with the stamps of its own log, so that it can be held against a truth of its own.
-void WriteDrives(const MappingResult& result, const std::filesystem::path& folder) {
-  if (result.drives.size() < 2) return;
-  std::filesystem::create_directory(folder / "drives");
-  for (std::size_t i = 0; i < result.drives.size(); ++i) {
-    const IndexRange poses = PosesOfDrive(result, i);
-    std::vector<TrajectoryPose> own(
-        result.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.begin),
-        result.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.end));
-    for (TrajectoryPose& pose : own) pose.stamp -= result.drives[i].stamp_offset_s;
-    WriteTrajectory(own, result.graph.floors(),
-                    folder / "drives" / (std::to_string(i + 1) + ".tum"));
-  }
-}
-
-}  // namespace
-
-std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
-                                   const std::optional<FloorId>& floor) {
+std::vector<PosedScan> DrawnScans(const MappingResult& result) {
   std::vector<PosedScan> scans;
   scans.reserve(result.kept_scans.size());
   for (const KeptScan& kept : result.kept_scans) {
     const TrajectoryPose& pose = result.trajectory.at(kept.trajectory_index);
     if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
   }
+  return scans;
+}
+
+using Names = std::vector<std::string>;
+
+/// What could not be written, and why.
+class Unwritten {
+ public:
+  bool empty() const { return files_.empty(); }
+  bool is_too_large() const { return is_too_large_; }
+
+  void Add(const Names& files, const std::string& reason, bool too_large) {
+    if (files_.empty()) reason_ = reason;
+    files_.insert(files_.end(), files.begin(), files.end());
+    is_too_large_ = is_too_large_ || too_large;
+  }
+
+  /// One line: the reason is that of the first.
+  std::string Text() const {
+    constexpr std::size_t kNamed = 8;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(files_.size(), kNamed); ++i) {
+      names += (i == 0 ? "" : ", ") + files_[i];
+    }
+    if (files_.size() > kNamed) {
+      names += " and " + std::to_string(files_.size() - kNamed) + " more files";
+    }
+    return names + " could not be written: " + reason_;
+  }
+
+ private:
+  Names files_;
+  std::string reason_;
+  bool is_too_large_ = false;
+};
+
+/// Writes the files of a map one after the other, whatever becomes of each.
+class MapWriter {
+ public:
+  MapWriter(const MappingResult& result, const ExportOptions& options,
+            const std::filesystem::path& folder)
+      : result_(result), options_(options), folder_(folder) {}
+
+  void Render() {
+    const std::vector<PosedScan> scans = DrawnScans(result_);
+    for (std::size_t i = 0; i < floors().size(); ++i) {
+      OccupancyGrid grid;
+      grid.resolution_m = options_.grid.resolution_m;
+      const std::string stem = "floors/" + floors()[i].label;
+      const bool is_drawn = Try({stem + ".pcd", stem + ".pgm", stem + ".yaml"}, [&] {
+        grid = RenderGrid(scans, static_cast<FloorId>(i), options_.grid);
+      });
+      is_drawn_.push_back(is_drawn);
+      grids_.push_back(std::move(grid));
+    }
+  }
+
+  void WriteGeometry() {
+    if (std::count(is_drawn_.begin(), is_drawn_.end(), false) > 0) {
+      // A building without one of its floors would pass for the whole.
+      unwritten_.Add({"building.bt", "building.pcd", "building.ply"}, "", true);
+      WriteFloors();
+      return;
+    }
+    // The octree takes about as long as all the rest.
+    auto octree = std::async(options_.grid.threads > 1 ? std::launch::async : std::launch::deferred,
+                             [this] { WriteOctree(); });
+    const ColouredCloud building = WriteFloors();
+    Write("building.pcd", [&](const auto& path) { WritePcd(building, path); });
+    Write("building.ply", [&](const auto& path) { WritePly(building, path); });
+    Try({"building.bt"}, [&] { octree.get(); });
+  }
+
+  void WriteTables() {
+    const PoseGraph& graph = result_.graph;
+    Write("trajectory.tum",
+          [&](const auto& path) { WriteTrajectory(result_.trajectory, graph.floors(), path); });
+    WriteDrives();
+    Write("nodes.tum", [&](const auto& path) { WriteNodes(graph, path); });
+    Write("graph.g2o", [&](const auto& path) { WriteG2o(graph, path); });
+    Write("closures.csv", [&](const auto& path) { WriteClosures(result_.attempts, graph, path); });
+  }
+
+  std::string Report() {
+    std::string data;
+    Try({"report.html"},
+        [&] { data = ReportData(result_, grids_, options_.grid.max_usable_range_m); });
+    return data;
+  }
+
+  void WriteSummaryAndReport(Summary& summary, const std::string& report) {
+    if (!unwritten_.empty()) summary.warnings.push_back(unwritten_.Text());
+    Write("summary.json", [&](const auto& path) { WriteSummary(summary, path); });
+    if (report.empty()) return;
+    Write("report.html", [&](const auto& path) { WriteReport(report, summary, path); });
+  }
+
+  const std::vector<OccupancyGrid>& grids() const { return grids_; }
+  const Unwritten& unwritten() const { return unwritten_; }
+
+ private:
+  const std::vector<Floor>& floors() const { return result_.graph.floors(); }
+
+  /// Whether it was done; if not, the files are removed and noted.
+  bool Try(const Names& files, const std::function<void()>& write) {
+    std::string reason;
+    bool too_large = false;
+    try {
+      write();
+      return true;
+    } catch (const InputError& error) {
+      reason = error.what();
+      too_large = true;
+    } catch (const std::bad_alloc&) {
+      reason = "out of memory";
+    } catch (const std::exception& error) {
+      reason = error.what();
+    }
+    unwritten_.Add(files, reason, too_large);
+    std::error_code ignored;
+    for (const std::string& file : files) std::filesystem::remove(folder_ / file, ignored);
+    return false;
+  }
+
+  void Write(const std::string& file,
+             const std::function<void(const std::filesystem::path&)>& write) {
+    Try({file}, [&] { write(folder_ / file); });
+  }
+
+  void WriteOctree() const {
+    std::vector<FloorLayer> layers;
+    for (std::size_t i = 0; i < grids_.size(); ++i) {
+      layers.push_back({&grids_[i], floors()[i].elevation});
+    }
+    WriteOctomap(*BuildOctree(layers, options_.octree), folder_ / "building.bt");
+  }
+
+  /// And gives their walls, all together.
+  ColouredCloud WriteFloors() {
+    const std::vector<Colour> colours = FloorColours(floors());
+    ColouredCloud building;
+    for (std::size_t i = 0; i < grids_.size(); ++i) {
+      const Floor& floor = floors()[i];
+      const std::string stem = "floors/" + floor.label;
+      Write(stem + ".g2o",
+            [&](const auto& path) { WriteG2o(result_.graph, static_cast<FloorId>(i), path); });
+      if (!is_drawn_[i]) continue;
+      const ColouredCloud cloud =
+          Coloured(WallCloud(grids_[i], floor.elevation, static_cast<std::uint32_t>(i)), colours);
+      Write(stem + ".pcd", [&](const auto& path) { WritePcd(cloud, path); });
+      Try({stem + ".pgm", stem + ".yaml"},
+          [&] { WriteOccupancyGrid(grids_[i], (folder_ / stem).string()); });
+      building += cloud;
+    }
+    return building;
+  }
+
+  // Each drive with the stamps of its own log, so that it can be held against a truth of its own.
+  void WriteDrives() {
+    if (result_.drives.size() < 2) return;
+    std::filesystem::create_directory(folder_ / "drives");
+    for (std::size_t i = 0; i < result_.drives.size(); ++i) {
+      const IndexRange poses = PosesOfDrive(result_, i);
+      std::vector<TrajectoryPose> own(
+          result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.begin),
+          result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.end));
+      for (TrajectoryPose& pose : own) pose.stamp -= result_.drives[i].stamp_offset_s;
+      Write("drives/" + std::to_string(i + 1) + ".tum",
+            [&](const auto& path) { WriteTrajectory(own, floors(), path); });
+    }
+  }
+
+  const MappingResult& result_;
+  const ExportOptions& options_;
+  const std::filesystem::path& folder_;
+  std::vector<OccupancyGrid> grids_;  // by FloorId; empty where it could not be drawn
+  std::vector<bool> is_drawn_;
+  Unwritten unwritten_;
+};
+
+}  // namespace
+
+std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
+                                   const std::optional<FloorId>& floor) {
+  const std::vector<PosedScan> scans = DrawnScans(result);
   std::vector<FloorGrid> grids;
   for (std::size_t i = 0; i < result.graph.floors().size(); ++i) {
     const auto id = static_cast<FloorId>(i);
@@ -92,34 +238,42 @@ std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridO
   return grids;
 }
 
+std::vector<std::filesystem::path> ExportedFiles(const MappingResult& result) {
+  std::vector<std::filesystem::path> files = {"building.bt",  "building.pcd",   "building.ply",
+                                              "graph.g2o",    "trajectory.tum", "nodes.tum",
+                                              "closures.csv", "summary.json",   "report.html"};
+  for (const Floor& floor : result.graph.floors()) {
+    for (const char* ending : {".pcd", ".pgm", ".yaml", ".g2o"}) {
+      files.push_back(std::filesystem::path("floors") / (floor.label + ending));
+    }
+  }
+  for (std::size_t i = 0; result.drives.size() > 1 && i < result.drives.size(); ++i) {
+    files.push_back(std::filesystem::path("drives") / (std::to_string(i + 1) + ".tum"));
+  }
+  return files;
+}
+
 Summary WriteMap(const MappingResult& result, const RunDescription& run,
                  const ExportOptions& options, const std::filesystem::path& folder) {
   CheckFloorLabels(result.graph.floors());
+  MapWriter writer(result, options, folder);
   const auto rendering_start = Clock::now();
-  const std::vector<OccupancyGrid> grids = RenderFloors(result, options.grid);
+  writer.Render();
   const double rendering_seconds = SecondsSince(rendering_start);
 
   const auto export_start = Clock::now();
   std::filesystem::create_directory(folder / "floors");
-  // The octree takes about as long as all the rest.
-  auto octree =
-      std::async(options.grid.threads > 1 ? std::launch::async : std::launch::deferred,
-                 [&] { WriteOctree(result.graph, grids, options.octree, folder / "building.bt"); });
-  WriteFloors(result.graph, grids, folder);
-  WriteTrajectory(result.trajectory, result.graph.floors(), folder / "trajectory.tum");
-  WriteDrives(result, folder);
-  WriteNodes(result.graph, folder / "nodes.tum");
-  WriteG2o(result.graph, folder / "graph.g2o");
-  WriteClosures(result.attempts, result.graph, folder / "closures.csv");
-  const std::string report = ReportData(result, grids, options.grid.max_usable_range_m);
-  octree.get();
+  writer.WriteGeometry();
+  writer.WriteTables();
+  const std::string report = writer.Report();
 
-  Summary summary = Summarise(result, run, grids);
+  Summary summary = Summarise(result, run, writer.grids());
   summary.seconds.rendering += rendering_seconds;
   summary.seconds.export_ += SecondsSince(export_start);
   summary.seconds.total += SecondsSince(rendering_start);
-  WriteSummary(summary, folder / "summary.json");
-  WriteReport(report, summary, folder / "report.html");
+  writer.WriteSummaryAndReport(summary, report);
+  const Unwritten& unwritten = writer.unwritten();
+  if (!unwritten.empty()) throw ExportError(unwritten.Text(), unwritten.is_too_large());
   return summary;
 }
 

@@ -116,6 +116,17 @@ void CarryOver(const fs::path& replaced, const fs::path& current) {
   }
 }
 
+// A file takes the place of one; a folder is filled file by file, so that nothing else in it goes.
+void MoveInto(const fs::directory_entry& entry, const fs::path& place) {
+  if (!entry.is_directory() || !fs::exists(place)) {
+    Rename(entry.path(), place);
+    return;
+  }
+  for (const fs::directory_entry& inner : fs::directory_iterator(entry.path())) {
+    MoveInto(inner, place / inner.path().filename());
+  }
+}
+
 std::vector<fs::path> MakeParents(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -203,12 +214,7 @@ void OutputFolder::Replace() {
 
 void OutputFolder::Complete() {
   for (const fs::directory_entry& entry : fs::directory_iterator(aside_)) {
-    const fs::path place = target_ / entry.path().filename();
-    if (entry.is_directory() && fs::exists(place)) {
-      Exchange(entry.path(), place);
-    } else {
-      Rename(entry.path(), place);
-    }
+    MoveInto(entry, target_ / entry.path().filename());
   }
   std::error_code ignored;
   fs::remove_all(aside_, ignored);

@@ -2,22 +2,17 @@
 #include "masked_mapper/map_file/checkpoint_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "database.hpp"
-#include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/map_file/map_file_writer.hpp"
+#include "log_identity.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
-#include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
+#include "unfinished_folder.hpp"
 
 namespace fs = std::filesystem;
 
@@ -32,131 +27,9 @@ constexpr std::int64_t kCheckpointVersion = 2;
 /// A checkpoint may take this share of the time to the next one.
 constexpr double kShare = 0.03;
 
-constexpr const char* kCheckpointEnding = ".mmck";
-constexpr const char* kFinishedEnding = ".mmap";
-
-// Of the first log, and of later ones.
-std::string FileName(std::size_t drive) {
-  return "checkpoint" + (drive == 0 ? "" : "-" + std::to_string(drive + 1)) + kCheckpointEnding;
-}
-
-fs::path FinishedFile(const fs::path& folder, std::size_t drive) {
-  return folder / ("drive-" + std::to_string(drive + 1) + kFinishedEnding);
-}
-
-// A file that has grown, was cut or replaced; read at both ends alone, since logs are large.
-std::string IdentityOf(const std::string& path) {
-  constexpr std::streamoff kEnd = 1 << 16;
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) return "";
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(kEnd), '\0');
-  std::uint32_t checksum = 0;
-  in.read(bytes.data(), kEnd);
-  checksum = Checksum({bytes.data(), static_cast<std::size_t>(in.gcount())}, checksum);
-  if (size > static_cast<std::uintmax_t>(kEnd)) {
-    in.seekg(-kEnd, std::ios::end);
-    in.read(bytes.data(), kEnd);
-    checksum = Checksum({bytes.data(), static_cast<std::size_t>(in.gcount())}, checksum);
-  }
-  return std::to_string(size) + " bytes, checksum " + std::to_string(checksum);
-}
-
-std::string LogIdentity(const std::string& log, const std::string& floors_file) {
-  const std::string floors = IdentityOf(floors_file);
-  return IdentityOf(log) + (floors.empty() ? "" : "; floors: " + floors);
-}
-
-// Of everything that is read, a line each, by name.
-std::vector<std::pair<std::string, std::string>> Identities(const MapOrigin& origin) {
-  std::vector<std::pair<std::string, std::string>> lines = {
-      {origin.log, LogIdentity(origin.log, origin.options.mapping.floors.file)}};
-  for (const MapOrigin::LaterLog& later : origin.later_logs) {
-    lines.emplace_back(later.log, LogIdentity(later.log, later.floors));
-  }
-  if (!origin.onto.empty()) {
-    std::error_code missing;
-    fs::path file = origin.onto;
-    if (fs::is_directory(file, missing)) file /= "building.mmap";
-    lines.emplace_back(origin.onto, IdentityOf(file.string()));
-  }
-  return lines;
-}
-
-std::string IdentityText(const MapOrigin& origin) {
-  std::string text;
-  for (const auto& [name, line] : Identities(origin)) text += (text.empty() ? "" : "\n") + line;
-  return text;
-}
-
-// Throws InputError naming the first that has changed since.
-void CheckUnchanged(const MapOrigin& origin, const std::string& identity_before) {
-  if (IdentityText(origin) == identity_before) return;
-  std::istringstream before(identity_before);
-  for (const auto& [name, line] : Identities(origin)) {
-    std::string line_before;
-    std::getline(before, line_before);
-    if (line != line_before) {
-      throw InputError(name +
-                       ": has changed since the unfinished map was begun; --force starts afresh");
-    }
-  }
-  throw InputError("the unfinished map is of other logs; --force starts afresh");
-}
-
-using Key = std::vector<std::pair<std::string, std::string>>;
-
-// Everything that the map depends on, but for the program.
-Key KeyOf(const MapOrigin& origin) {
-  Key key = {{"log", origin.log}, {"mask", origin.mask}};
-  for (std::size_t i = 0; i < origin.later_logs.size(); ++i) {
-    const std::string number = std::to_string(i + 2);
-    key.emplace_back("log " + number, origin.later_logs[i].log);
-    if (!origin.later_logs[i].floors.empty()) {
-      key.emplace_back("floors of log " + number, origin.later_logs[i].floors);
-    }
-  }
-  if (!origin.onto.empty()) key.emplace_back("--onto", origin.onto);
-  Options options = origin.options;
-  for (const OptionEntry& entry : OptionTable(options)) {
-    if (entry.key != "threads") key.emplace_back(entry.key, ValueText(entry));
-  }
-  return key;
-}
-
-std::string FirstDifference(const Key& before, const Key& now) {
-  std::map<std::string, std::string> old(before.begin(), before.end());
-  for (const auto& [key, value] : now) {
-    const auto found = old.find(key);
-    if (found == old.end()) return key + " was not known, now it is " + value;
-    if (found->second != value) return key + " was " + found->second + ", now it is " + value;
-  }
-  const std::map<std::string, std::string> asked(now.begin(), now.end());
-  for (const auto& [key, value] : before) {
-    if (asked.count(key) == 0) return key + " was " + value + ", now there is none";
-  }
-  return "";
-}
-
-void RemoveUnfinished(const fs::path& folder) {
-  std::error_code ignored;
-  fs::remove_all(folder, ignored);
-}
-
 enum class PieceKind : std::int64_t { kPoses, kScans, kPoints };
 
 }  // namespace
-
-fs::path UnfinishedFolder(const fs::path& out) {
-  fs::path resolved = fs::weakly_canonical(fs::absolute(out));
-  if (!resolved.has_filename()) resolved = resolved.parent_path();
-  return resolved.parent_path() / ("." + resolved.filename().string() + ".unfinished");
-}
-
-std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now) {
-  return FirstDifference(KeyOf(before), KeyOf(now));
-}
 
 /// The open file, and how much of the grown parts is in it.
 class CheckpointFile::Impl {
@@ -170,7 +43,7 @@ class CheckpointFile::Impl {
     database_.Run("PRAGMA synchronous = NORMAL");
   }
 
-  void Make(const Key& key, const std::string& log_identity) {
+  void Make(const NamedValues& key, const std::string& log_identity) {
     Transaction transaction(database_);
     database_.Run(
         "CREATE TABLE run(id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL)"
@@ -198,8 +71,8 @@ class CheckpointFile::Impl {
 
   bool IsEmpty() { return database_.Number("SELECT count(*) FROM sqlite_master") == 0; }
 
-  Key ReadKey() {
-    Key key;
+  NamedValues ReadKey() {
+    NamedValues key;
     Statement rows(database_, "SELECT key, value FROM run ORDER BY id");
     while (rows.Next()) {
       std::string name(rows.Text());
@@ -290,7 +163,7 @@ class CheckpointFile::Impl {
 CheckpointFile::CheckpointFile(const fs::path& out, const MapOrigin& origin, double interval_s,
                                bool resume, std::size_t drive)
     : folder_(UnfinishedFolder(out)),
-      file_(folder_ / FileName(drive)),
+      file_(folder_ / CheckpointFileName(drive)),
       origin_(origin),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_s))),
@@ -376,46 +249,5 @@ void CheckpointFile::Remove() {
   has_checkpoint_ = false;
   RemoveUnfinished(folder_);
 }
-
-FinishedDrives::FinishedDrives(const fs::path& out, const MapOrigin& origin, bool resume)
-    : folder_(UnfinishedFolder(out)), origin_(origin), resume_(resume) {}
-
-std::optional<MappingResult> FinishedDrives::Load(std::size_t drive) {
-  const fs::path file = FinishedFile(folder_, drive);
-  if (!resume_ || !fs::exists(file)) return std::nullopt;
-  try {
-    SavedMap saved = ReadMapFile(file);
-    const std::string difference = DifferenceFrom(saved.origin, origin_);
-    if (!difference.empty()) {
-      throw InputError("the unfinished map was made otherwise: " + difference);
-    }
-    CheckUnchanged(origin_, saved.origin.identity);
-    ++count_;
-    return std::move(saved.result);
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    const bool says_how = text.find("--force") != std::string::npos;
-    throw InputError(text + (says_how ? "" : "; --force starts afresh"));
-  }
-}
-
-void FinishedDrives::Save(std::size_t drive, const MappingResult& result) {
-  std::error_code ignored;
-  fs::create_directories(folder_);
-  const fs::path file = FinishedFile(folder_, drive);
-  const fs::path partial = file.string() + ".partial";
-  fs::remove(partial, ignored);
-  MapOrigin origin = origin_;
-  origin.identity = IdentityText(origin_);
-  WriteMapFile(origin, result, partial);
-  fs::rename(partial, file);
-  fs::remove(folder_ / FileName(drive), ignored);
-  for (const char* ending : {"-wal", "-journal", "-shm"}) {
-    fs::remove((folder_ / FileName(drive)).string() + ending, ignored);
-  }
-  ++count_;
-}
-
-void FinishedDrives::Remove() { RemoveUnfinished(folder_); }
 
 }  // namespace masked_mapper

@@ -13,11 +13,13 @@
 
 #include "database.hpp"
 #include "map_rows.hpp"
+#include "masked_mapper/geometry/covariance.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
+#include "stored_options.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -73,11 +75,9 @@ class Reader {
     if (bytes.size() != kCovarianceBytes) Malformed(table, "a covariance of the wrong size");
     Eigen::Matrix3d covariance;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        covariance(i, j) = TakeNumber<double>(bytes);
-        if (!std::isfinite(covariance(i, j))) Malformed(table, "a covariance is not finite");
-      }
+      for (int j = 0; j < 3; ++j) covariance(i, j) = TakeNumber<double>(bytes);
     }
+    if (!IsCovariance(covariance)) Malformed(table, "a covariance that is none");
     return covariance;
   }
 
@@ -125,16 +125,13 @@ class Reader {
   }
 
   void ReadOptions() {
+    StoredOptions stored;
     Statement rows(database_, "SELECT key, value FROM options ORDER BY id");
-    try {
-      while (rows.Next()) {
-        const std::string key(rows.Text());
-        SetOption("table options", key, std::string(rows.Text()), map_.origin.options);
-      }
-      CheckOptions(map_.origin.options);
-    } catch (const InputError& error) {
-      throw DatabaseError(error.what());
+    while (rows.Next()) {
+      std::string key(rows.Text());
+      stored.Add(std::move(key), std::string(rows.Text()));
     }
+    map_.origin.options = stored.Take(map_.left_aside);
   }
 
   void ReadRun() {

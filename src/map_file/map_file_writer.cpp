@@ -48,10 +48,8 @@ void WriteOrigin(const MapOrigin& origin, const MappingResult& result, const Dat
   if (!origin.identity.empty()) run.BindText("identity").BindText(origin.identity).Put();
   run.BindText("motion_source").BindText(NameOf(kMotionSources, result.motion_source)).Put();
   Statement insert(database, "INSERT INTO options(key, value) VALUES (?,?)");
-  Options options = origin.options;
-  for (const OptionEntry& entry : OptionTable(options)) {
-    if (entry.key == "threads") continue;  // it changes nothing
-    insert.BindText(entry.key).BindText(ValueText(entry)).Put();
+  for (const auto& [key, value] : ChangedOptions(origin.options)) {
+    insert.BindText(key).BindText(value).Put();
   }
 }
 

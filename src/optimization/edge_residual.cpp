@@ -23,7 +23,9 @@ Eigen::Matrix3d SqrtInformation(const Eigen::Matrix3d& covariance) {
     if (eigen.eigenvalues()(0) < -1e-9 * (1.0 + eigen.eigenvalues()(2))) std::abort();
     const Eigen::Vector3d floored = eigen.eigenvalues().cwiseMax(kFloor * kFloor);
     factor.compute(eigen.eigenvectors() * floored.asDiagonal() * eigen.eigenvectors().transpose());
-    if (factor.info() != Eigen::Success) std::abort();
+    if (factor.info() != Eigen::Success) {  // the smallest drowned in the rounding of the largest
+      return floored.cwiseSqrt().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    }
   }
   return factor.matrixL().solve(Eigen::Matrix3d::Identity());
 }

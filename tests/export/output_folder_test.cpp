@@ -141,6 +141,17 @@ TEST(OutputFolder, CompletesWhatIsThere) {
   EXPECT_EQ(ReadBytes(folder / "out" / "summary.json"), "new");
 }
 
+TEST(OutputFolder, CompletesFoldersFileByFile) {
+  const TestFolder folder;
+  MakeOldMap(folder / "out");
+  WriteFile(folder / "out" / "floors" / "plan.txt", "mine");
+  OutputFolder output(folder / "out", ExistingFolder::kComplete);
+  WriteNewMap(output.path());
+  output.Commit();
+  EXPECT_EQ(FilesBelow(folder / "out"),
+            (Names{"building.mmap", "floors/0.pgm", "floors/plan.txt", "summary.json"}));
+}
+
 TEST(OutputFolder, SomeoneElsesNewFolderIsLeftAlone) {
   const TestFolder folder;
   {

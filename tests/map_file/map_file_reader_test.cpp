@@ -263,8 +263,6 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
            "UPDATE scans SET id = 99 WHERE id = 0",
            "UPDATE run SET key = 'legs' WHERE key = 'mask'",
            "UPDATE run SET value = 'wings' WHERE key = 'motion_source'",
-           "UPDATE options SET key = 'matcher.min_scoer' WHERE key = 'matcher.min_score'",
-           "UPDATE options SET value = '7' WHERE key = 'matcher.min_score'",
            "UPDATE log_statistics SET value = 'many' WHERE key = 'scans'",
        }) {
     const fs::path path = folder / (std::to_string(number++) + ".mmap");
@@ -278,6 +276,97 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
     }
     EXPECT_FALSE(Refusal(path).empty()) << change;
   }
+}
+
+/// A map whose rows were changed by hand: the checksums are right, what they say may not be.
+void WriteChanged(const fs::path& path, const std::string& change) {
+  WriteMapFile({}, SampleMap(), path);
+  Database database(path, OpenMode::kWrite);
+  database.Run("PRAGMA foreign_keys = OFF");
+  database.Run(change);
+  database.Run("DELETE FROM content");
+  Seal(database);
+}
+
+// Finite numbers that no covariance has: a solve would find nothing to divide by.
+TEST(MapFileReader, RefusesCovariancesThatAreNone) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* table : {"edges", "attempts"}) {
+    for (const char* covariance : {
+             "x'000000000000F0BF' || substr(covariance, 9)",  // minus one m^2
+             "x'9C7500883CE4377E' || substr(covariance, 9)",  // 1e300
+             "substr(covariance, 1, 8) || x'000000000000F03F' || substr(covariance, 17)",
+         }) {
+      const fs::path path = folder / (std::to_string(number++) + ".mmap");
+      WriteChanged(path, std::string("UPDATE ") + table + " SET covariance = " + covariance +
+                             " WHERE id = 2");
+      EXPECT_NE(Refusal(path).find("a covariance that is none"), std::string::npos)
+          << table << ": " << covariance;
+    }
+  }
+}
+
+SavedMap WithOptions(const fs::path& path, const std::vector<std::string>& changes) {
+  std::string all;
+  for (const std::string& change : changes) all += change + ";";
+  WriteChanged(path, all);
+  return ReadMapFile(path);
+}
+
+std::string Insert(const std::string& key, const std::string& value) {
+  return "INSERT INTO options(key, value) VALUES ('" + key + "', '" + value + "')";
+}
+
+TEST(MapFileReader, OptionsThatAreTheDefaultAreNotKept) {
+  const TestFolder folder;
+  MapOrigin origin{"a.log", "openings", {}};
+  WriteMapFile(origin, SampleMap(), folder / "default.mmap");
+  EXPECT_EQ(
+      Database(folder / "default.mmap", OpenMode::kRead).Number("SELECT count(*) FROM options"), 0);
+  SetOption("matcher.min_score=0.3", origin.options);
+  WriteMapFile(origin, SampleMap(), folder / "other.mmap");
+  Database other(folder / "other.mmap", OpenMode::kRead);
+  EXPECT_EQ(other.Text("SELECT group_concat(key || '=' || value) FROM options"),
+            "matcher.min_score=0.3");
+}
+
+// Options come and go with the program; the map stays.
+TEST(MapFileReader, OptionsThatAreNotUnderstoodAreSaidAndLeftAside) {
+  const TestFolder folder;
+  const SavedMap map = WithOptions(
+      folder / "a.mmap", {Insert("matcher.min_score", "0.3"), Insert("matcher.of_old", "12"),
+                          Insert("motion.legs", "4"), Insert("nodes.min_edge_length_m", "-5")});
+  EXPECT_TRUE(SameMap(map.result, SampleMap()));
+  EXPECT_EQ(map.origin.options.matcher.min_score, 0.3);
+  EXPECT_EQ(map.origin.options.nodes.min_edge_length_m, Options().nodes.min_edge_length_m);
+  ASSERT_EQ(map.left_aside.size(), 2U);
+  EXPECT_NE(map.left_aside[0].find("matcher.of_old, motion.legs"), std::string::npos)
+      << map.left_aside[0];
+  EXPECT_NE(map.left_aside[1].find("nodes.min_edge_length_m must be"), std::string::npos)
+      << map.left_aside[1];
+  EXPECT_TRUE(ReadMapFile(folder / "a.mmap").left_aside.size() == 2U) << "each time";
+  WriteMapFile({}, SampleMap(), folder / "b.mmap");
+  EXPECT_TRUE(ReadMapFile(folder / "b.mmap").left_aside.empty());
+}
+
+TEST(MapFileReader, OptionsThatContradictEachOtherAreLeftAside) {
+  const TestFolder folder;
+  const SavedMap map = WithOptions(folder / "a.mmap", {Insert("nodes.min_edge_length_m", "20"),
+                                                       Insert("nodes.max_edge_length_m", "9")});
+  EXPECT_EQ(map.left_aside.size(), 1U);
+  EXPECT_TRUE(ChangedOptions(map.origin.options).empty());
+}
+
+TEST(MapFileReader, ALongListOfUnknownOptionsIsOneShortLine) {
+  const TestFolder folder;
+  std::vector<std::string> changes;
+  for (int i = 0; i < 200; ++i) changes.push_back(Insert("old.\n" + std::to_string(i), "1"));
+  const SavedMap map = WithOptions(folder / "a.mmap", changes);
+  ASSERT_EQ(map.left_aside.size(), 1U);
+  EXPECT_EQ(map.left_aside[0].find('\n'), std::string::npos);
+  EXPECT_NE(map.left_aside[0].find("old.?0, old.?1"), std::string::npos) << map.left_aside[0];
+  EXPECT_NE(map.left_aside[0].find("and 188 more"), std::string::npos) << map.left_aside[0];
 }
 
 TEST(MapFileReader, RefusesTablesThatAreNotOurs) {

@@ -8,6 +8,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "masked_mapper/export/summary_file.hpp"
@@ -34,10 +36,21 @@ std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOption
 /// The grid of each floor, by FloorId.
 std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options);
 
+/// Files that could not be written; all others are there and whole.
+class ExportError : public std::runtime_error {
+ public:
+  ExportError(const std::string& message, bool too_large)
+      : std::runtime_error(message), is_too_large(too_large) {}
+  bool is_too_large;  ///< the building, for cells of this size: coarser ones mend it
+};
+
+/// What WriteMap() writes of this map: names below its folder.
+std::vector<std::filesystem::path> ExportedFiles(const MappingResult& result);
+
 /// Writes all files into `folder`, which exists (OutputFolder). To the seconds of the result those
-/// of rendering and export are added, in the returned summary as in the file. Throws InputError for
-/// a label that cannot name a file and for a building too large for its cells, std::runtime_error
-/// when a file cannot be written.
+/// of rendering and export are added, in the returned summary as in the file. A file that cannot be
+/// written holds up no other, and leaves nothing behind: ExportError in the end names all of them,
+/// as does a warning in the summary. Throws InputError for a label that cannot name a file.
 Summary WriteMap(const MappingResult& result, const RunDescription& run,
                  const ExportOptions& options, const std::filesystem::path& folder);
 

@@ -14,14 +14,6 @@
 
 namespace masked_mapper {
 
-/// `out` without its last part, then `.NAME.unfinished`: where the checkpoint of a map that goes to
-/// `out` is kept.
-std::filesystem::path UnfinishedFolder(const std::filesystem::path& out);
-
-/// In words, how another run differs from the one that made a map or a checkpoint:
-/// "matcher.min_score was 0.425, now it is 0.5"; empty when it does not.
-std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now);
-
 class CheckpointFile : public CheckpointStore {
  public:
   /// Nothing is made before the first Save(). `interval_s` between two checkpoints at least, and
@@ -60,31 +52,6 @@ class CheckpointFile : public CheckpointStore {
   bool has_checkpoint_ = false;
   double progress_ = 0.0;
   std::unique_ptr<Impl> impl_;
-};
-
-/// Of a map of several logs in the making, the drives that are finished: each a saved map in the
-/// folder of the checkpoints.
-class FinishedDrives {
- public:
-  /// With `resume`, Load() gives what is there.
-  FinishedDrives(const std::filesystem::path& out, const MapOrigin& origin, bool resume);
-
-  /// Empty when the drive is not finished. Throws InputError when it is, but of other logs or
-  /// options, or damaged.
-  std::optional<MappingResult> Load(std::size_t drive);
-  /// Keeps it, whole or not at all, and removes the drive's checkpoint. Throws std::exception when
-  /// it cannot be written.
-  void Save(std::size_t drive, const MappingResult& result);
-  /// How many were loaded or saved.
-  std::size_t count() const { return count_; }
-  /// Removes them, with all checkpoints.
-  void Remove();
-
- private:
-  std::filesystem::path folder_;
-  MapOrigin origin_;
-  bool resume_;
-  std::size_t count_ = 0;
 };
 
 }  // namespace masked_mapper

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
@@ -29,6 +30,30 @@ struct MapOrigin {
 struct SavedMap {
   MapOrigin origin;
   MappingResult result;  ///< without its seconds, in which two runs differ
+  /// What of the file was not understood and left aside, one line each, for people.
+  std::vector<std::string> left_aside = {};
 };
+
+/// The file of a map in the folder that `map` writes.
+constexpr const char* kMapFileName = "building.mmap";
+
+using NamedValues = std::vector<std::pair<std::string, std::string>>;
+
+/// Key and value of every option that differs from its default, but for the number of threads.
+NamedValues ChangedOptions(const Options& options);
+
+/// Whether an option says only how a finished map is drawn (`grid.*`, `octree.*`): it may be
+/// another one each time that the map is exported.
+bool IsOfDrawing(const std::string& option_key);
+
+/// Everything that the map depends on, but for the program.
+NamedValues KeyOf(const MapOrigin& origin);
+
+/// In words, how one key differs from the other: "matcher.min_score was 0.425, now it is 0.5";
+/// empty when it does not.
+std::string FirstDifference(const NamedValues& before, const NamedValues& now);
+
+/// The same of how another run differs from the one that made a map or a checkpoint.
+std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now);
 
 }  // namespace masked_mapper

@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "masked_mapper/geometry/covariance.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
@@ -41,6 +42,9 @@ void Serialize(Archive& archive, Pose2& pose) {
 template <class Archive>
 void Serialize(Archive& archive, UncertainPose2& pose) {
   archive(pose.mean, pose.covariance);
+  if (Archive::kReads && !IsCovariance(pose.covariance)) {
+    Archive::Refuse("a state with a covariance that is none");
+  }
 }
 
 template <class Archive>

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_run.hpp"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "finished_map.hpp"
+#include "interrupt.hpp"
+#include "masked_mapper/editing/edits.hpp"
+#include "masked_mapper/export/closing_table.hpp"
+#include "masked_mapper/export/output_folder.hpp"
+#include "masked_mapper/joining/drive_joining.hpp"
+#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map_file/checkpoint_file.hpp"
+#include "masked_mapper/map_file/finished_drives.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/mapping/map_log.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
+#include "progress_bar.hpp"
+#include "saved_map_path.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// What stands in the way of writing to OUT.
+ExistingFolder HowToTreat(const MapArguments& arguments) {
+  const bool is_empty =
+      std::filesystem::is_directory(arguments.out) && std::filesystem::is_empty(arguments.out);
+  if (arguments.resume && is_empty) return ExistingFolder::kReplace;
+  return arguments.force ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
+}
+
+/// The map that is asked for, when OUT holds it already. Throws InputError when it holds another.
+std::optional<SavedMap> FinishedMap(const MapArguments& arguments, const MapOrigin& origin) {
+  const std::filesystem::path file = std::filesystem::path(arguments.out) / kMapFileName;
+  if (!arguments.resume || arguments.force || !std::filesystem::exists(file)) return {};
+  SavedMap map = ReadMapFile(file);
+  const std::string difference = DifferenceFrom(map.origin, origin);
+  if (difference.empty()) return map;
+  throw InputError(arguments.out + " holds a finished map that was made otherwise: " + difference +
+                   "; --force replaces it");
+}
+
+/// One log as it is asked for among several.
+MapOrigin OriginOfDrive(const MapOrigin& origin, std::size_t drive) {
+  MapOrigin own = origin;
+  if (drive == 0) return own;
+  own.log = origin.later_logs[drive - 1].log;
+  own.options.mapping.floors.file = origin.later_logs[drive - 1].floors;
+  return own;
+}
+
+/// What is kept on disk of a map in the making.
+struct Keeping {
+  FinishedDrives finished;
+  std::unique_ptr<CheckpointFile> checkpoints;  ///< of the drive at work
+  std::size_t drives = 1;
+
+  bool HasAnything() const { return finished.count() > 0 || HasCheckpoint(); }
+  /// To be gone on from, in percent of all logs.
+  int Percent() const {
+    const double part = HasCheckpoint() ? checkpoints->progress() : 0.0;
+    const double done = static_cast<double>(finished.count()) + part;
+    return static_cast<int>(100.0 * done / static_cast<double>(drives));
+  }
+
+ private:
+  bool HasCheckpoint() const { return checkpoints && checkpoints->HasCheckpoint(); }
+};
+
+void WarnOfLeftAside(const std::string& name, const SavedMap& map, ProgressBar& progress) {
+  for (const std::string& line : map.left_aside) progress.Warn(name + ": " + line);
+}
+
+/// Maps one of the logs, unless it is done already.
+MappingResult MapDrive(const MapArguments& arguments, const MapOrigin& origin, std::size_t drive,
+                       Keeping& keeping, ProgressBar& progress) {
+  const bool is_alone = keeping.drives == 1 && origin.onto.empty();
+  if (!is_alone) {
+    std::optional<MappingResult> done = keeping.finished.Load(drive);
+    if (done) return std::move(*done);
+  }
+  const MapOrigin own = OriginOfDrive(origin, drive);
+  keeping.checkpoints = std::make_unique<CheckpointFile>(
+      arguments.out, origin, arguments.checkpoint_s, arguments.resume, drive);
+  MappingResult map =
+      MapLog(own.log, own.mask, own.options.mapping, progress, keeping.checkpoints.get());
+  const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
+                                keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
+  if (is_alone || !is_worth_keeping || arguments.checkpoint_s == 0.0) return map;
+  keeping.checkpoints.reset();
+  try {
+    keeping.finished.Save(drive, map);
+  } catch (const std::runtime_error& error) {
+    // As with checkpoints: a full disk must not end what needs none of it.
+    progress.Warn(std::string(error.what()) + "; going on without keeping the drive");
+  }
+  return map;
+}
+
+/// Maps every log by itself and joins them, to OLD first of all.
+MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keeping& keeping,
+                      ProgressBar& progress) {
+  std::vector<MappingResult> maps;
+  double onto_seconds = 0.0;
+  if (!origin.onto.empty()) {
+    const StageTimer timer(onto_seconds);
+    progress.Stage("reading " + origin.onto);
+    SavedMap old = ReadMapFile(MapFileOf(origin.onto));
+    WarnOfLeftAside(origin.onto, old, progress);
+    maps.push_back(std::move(old.result));
+    if (maps.back().trajectory.empty() || maps.back().drives.empty()) {
+      throw InputError(origin.onto + ": a map without a scan cannot be grown");
+    }
+  }
+  for (std::size_t drive = 0; drive < keeping.drives; ++drive) {
+    maps.push_back(MapDrive(arguments, origin, drive, keeping, progress));
+  }
+  MappingResult map = JoinDrives(std::move(maps), origin.options.drive_joins,
+                                 origin.options.mapping.closures, progress);
+  map.seconds.read += onto_seconds;
+  map.seconds.total += onto_seconds;
+  return map;
+}
+
+/// Mends the map; empty, or why it stays as it is.
+std::string EditFault(const MapArguments& arguments, const Options& options, MappingResult& map) {
+  if (arguments.edits.empty()) return "";
+  double seconds = 0.0;
+  try {
+    const StageTimer timer(seconds);
+    ApplyEdits(arguments.edits, options.mapping.closures, map);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  map.seconds.optimisation += seconds;
+  map.seconds.total += seconds;
+  return "";
+}
+
+/// What to add to the word of a run that ended early.
+std::string HowToGoOn(const Keeping& keeping) {
+  return "; " + std::to_string(keeping.Percent()) + " % of the " +
+         (keeping.drives > 1 ? "logs" : "log") + " is kept: the same command with --resume goes on";
+}
+
+/// The words for who has the map, but not all that it is exported as.
+ExportAdvice HowToExport(const MapArguments& arguments) {
+  // With edits the map that is kept is not the one that the command would make.
+  if (!arguments.edits.empty()) return ExportAdvice::kExport;
+  return ExportAdvice::kResume;
+}
+
+MapOrigin OriginOf(const MapArguments& arguments, Options options) {
+  const std::size_t given = arguments.floors.size();
+  const bool is_given_to_all = given == arguments.logs.size();
+  if (given > 0 && !is_given_to_all) {
+    throw InputError("--floors is given " + std::to_string(given) + " times for " +
+                     std::to_string(arguments.logs.size()) +
+                     " logs: once for each, in their order, `-` for none");
+  }
+  const auto floors_of = [&](std::size_t log) {
+    if (given == 0) return options.mapping.floors.file;
+    return arguments.floors[log] == "-" ? std::string() : arguments.floors[log];
+  };
+  MapOrigin origin;
+  origin.log = arguments.logs.front();
+  origin.mask = arguments.mask;
+  for (std::size_t i = 1; i < arguments.logs.size(); ++i) {
+    origin.later_logs.push_back({arguments.logs[i], floors_of(i)});
+  }
+  origin.onto = arguments.onto;
+  options.mapping.floors.file = floors_of(0);
+  origin.options = std::move(options);
+  CheckOptions(origin.options);
+  return origin;
+}
+
+/// Maps and puts the map into OUT, where nothing loses it any more.
+MappingResult MakeMap(const MapArguments& arguments, const MapOrigin& origin,
+                      ExistingFolder existing, Keeping& keeping, ProgressBar& progress) {
+  MappingResult result;
+  std::string edit_fault;
+  try {
+    result = MapLogs(arguments, origin, keeping, progress);
+    edit_fault = EditFault(arguments, origin.options, result);
+    progress.Stage("writing");
+    KeepMap(origin, result, arguments.out, existing);
+  } catch (const InputError&) {
+    throw;  // what is at fault is still so when the same command is run again
+  } catch (const Interrupted&) {
+    if (!keeping.HasAnything()) throw;
+    throw Interrupted("interrupted" + HowToGoOn(keeping));
+  } catch (const std::runtime_error& error) {
+    if (!keeping.HasAnything()) throw;
+    throw std::runtime_error(error.what() + HowToGoOn(keeping));
+  }
+  keeping.checkpoints.reset();
+  keeping.finished.Remove();
+  if (!edit_fault.empty()) {
+    throw InputError(edit_fault + "; the map is kept in " + arguments.out +
+                     " as it was before the edits: `export " + arguments.out +
+                     " --format all --edits FILE -o NEW` edits it");
+  }
+  return result;
+}
+
+/// Goes on from a finished map: writes what is not there, or all when it is to be drawn otherwise.
+int ResumeFinished(const MapArguments& arguments, const MapOrigin& origin, SavedMap map,
+                   ProgressBar& progress) {
+  if (!arguments.edits.empty()) {
+    throw InputError(arguments.out + " is finished already: `export " + arguments.out +
+                     " --format all --edits " + arguments.edits + " -o NEW` edits it");
+  }
+  WarnOfLeftAside(arguments.out, map, progress);
+  const bool is_drawn_so = IsDrawnSo(map.origin, origin);
+  if (is_drawn_so && IsComplete(map.result, arguments.out)) {
+    if (!arguments.quiet) std::cout << "map: " << arguments.out << " is finished already\n";
+    return 0;
+  }
+  progress.Stage("writing");
+  map.origin.options.grid = origin.options.grid;
+  map.origin.options.octree = origin.options.octree;
+  const Summary summary =
+      ExportMap(map, arguments.out, is_drawn_so ? MapFileNow::kAsItIs : MapFileNow::kNew,
+                HowToExport(arguments));
+  progress.Finish();
+  if (!arguments.quiet) std::cout << ClosingTable(summary) << "map: " << arguments.out << "\n";
+  return 0;
+}
+
+Options AskedOptions(const MapArguments& arguments) {
+  Options options = ReadOptions(arguments.options);
+  if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
+  CheckOptions(options);
+  SettleThreads(options);
+  return options;
+}
+
+/// What must not be found out after an hour of mapping.
+void CheckInputs(const MapArguments& arguments, const MapOrigin& origin) {
+  for (const MapOrigin::LaterLog& later : origin.later_logs) {
+    OpenLog(later.log, origin.options.mapping.log);
+  }
+  if (!origin.onto.empty()) MapFileOf(origin.onto);
+  if (!arguments.edits.empty() && !std::filesystem::exists(arguments.edits)) {
+    throw InputError(arguments.edits + ": no such list of edits");
+  }
+}
+
+}  // namespace
+
+int RunMap(const MapArguments& arguments) {
+  Options options = AskedOptions(arguments);
+  MakeMask(arguments.mask, options.mapping.masks);  // throws before the log is looked at
+  // Before the work: an hour of mapping must not end in "exists already".
+  const ExistingFolder existing = HowToTreat(arguments);
+  const MapOrigin origin = OriginOf(arguments, std::move(options));
+  CheckInputs(arguments, origin);
+  Keeping keeping{FinishedDrives(arguments.out, origin, arguments.resume), nullptr,
+                  arguments.logs.size()};
+  CatchInterrupts();
+  ProgressBar progress(arguments.quiet);
+  if (std::optional<SavedMap> finished = FinishedMap(arguments, origin)) {
+    keeping.finished.Remove();  // the program may have ended between the two
+    return ResumeFinished(arguments, origin, std::move(*finished), progress);
+  }
+  CheckOutputFolder(arguments.out, existing);
+  if (!arguments.resume && !arguments.force && CheckpointFile::Exists(arguments.out)) {
+    throw InputError("an unfinished map of " + arguments.out +
+                     " is there: --resume goes on with it, --force starts afresh");
+  }
+  // What an earlier run left of finished drives must not be taken for this one's.
+  const bool keeps_drives = keeping.drives > 1 || !origin.onto.empty();
+  if (!arguments.resume && keeps_drives) keeping.finished.Remove();
+  SavedMap map{origin, MakeMap(arguments, origin, existing, keeping, progress)};
+  const Summary summary =
+      ExportMap(map, arguments.out, MapFileNow::kAsItIs, HowToExport(arguments));
+  progress.Finish();
+  if (!arguments.quiet) std::cout << ClosingTable(summary) << "map: " << arguments.out << "\n";
+  return 0;
+}
+
+}  // namespace masked_mapper

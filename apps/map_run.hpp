@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `map` does: from logs to the folder of a map.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "option_flags.hpp"
+
+namespace masked_mapper {
+
+struct MapArguments {
+  std::vector<std::string> logs;
+  std::string out;
+  std::string mask = "openings";
+  OptionFlags options;
+  std::string edits;
+  std::vector<std::string> floors;
+  std::string onto;
+  std::string threads;
+  double checkpoint_s = 1.0;
+  bool resume = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// The exit code of a run that did not throw.
+int RunMap(const MapArguments& arguments);
+
+}  // namespace masked_mapper
