@@ -159,6 +159,51 @@ FloorTransit Joined(const FloorTransit& a, const FloorTransit& b) {
   return joined;
 }
 
+/// Of the transits of stays in order: those that meet are one.
+void Append(const FloorTransit& transit, std::vector<FloorTransit>& transits) {
+  if (transits.empty() || transit.start > transits.back().end) {
+    transits.push_back(transit);
+  } else {
+    transits.back() = Joined(transits.back(), transit);
+  }
+}
+
+std::vector<FloorTransit> TransitsOf(const std::vector<Vertical>& samples, const WheelTrack& track,
+                                     const FloorAccelerationOptions& options) {
+  std::vector<TimeSpan> stays = {{samples.front().stamp, samples.back().stamp}};
+  if (track.Travels()) stays = track.Stays(options.cab_radius, options.least_stay_s);
+  std::vector<FloorTransit> transits;
+  for (const TimeSpan& stay : stays) {
+    const auto is_before = [](const Vertical& sample, double stamp) {
+      return sample.stamp < stamp;
+    };
+    const auto first = std::lower_bound(samples.begin(), samples.end(), stay.start, is_before);
+    const auto end = std::lower_bound(first, samples.end(), stay.end, is_before);
+    for (const Ride& ride : RidesOfStay(samples, static_cast<std::size_t>(first - samples.begin()),
+                                        static_cast<std::size_t>(end - samples.begin()), options)) {
+      FloorTransit transit = TransitOf(ride);
+      if (track.Travels()) {
+        const TimeSpan whole = track.StayAround(transit.middle, options.cab_radius);
+        transit.start = std::min(transit.start, whole.start);
+        transit.end = std::max(transit.end, whole.end);
+      }
+      Append(transit, transits);
+    }
+  }
+  return transits;
+}
+
+/// Gravity tells the unit: the factor that makes m/s^2 of the readings; 0: they are of no use.
+double ScaleOf(double gravity, std::vector<std::string>& warnings) {
+  if (gravity > 0.9 && gravity < 1.1) {
+    warnings.emplace_back("acceleration is taken as multiples of gravity");
+    return kGravity;
+  }
+  if (gravity >= 8.0 && gravity <= 12.0) return 1.0;
+  warnings.emplace_back("acceleration without gravity is of no use for floors: left out");
+  return 0.0;
+}
+
 }  // namespace
 
 AccelerationTrack::Spell AccelerationTrack::Current() const {
@@ -190,23 +235,14 @@ AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
   if (IsEmpty()) return result;
   std::vector<Spell> spells = spells_;
   if (count_ > 0) spells.push_back(Current());
-
-  // Gravity tells the unit, and which way is up.
-  Eigen::Vector3d up(0.0, 0.0, 0.0);
+  Eigen::Vector3d up(0.0, 0.0, 0.0);  // as gravity tells it
   std::vector<double> norms;
   for (const Spell& spell : spells) {
     norms.push_back(spell.acceleration_in_robot.norm());
     up += spell.acceleration_in_robot / std::max(norms.back(), 1e-9);
   }
-  const double gravity = Median(std::move(norms));
-  double scale = 1.0;
-  if (gravity > 0.9 && gravity < 1.1) {
-    scale = kGravity;
-    result.warnings.emplace_back("acceleration is taken as multiples of gravity");
-  } else if (gravity < 8.0 || gravity > 12.0) {
-    result.warnings.emplace_back("acceleration without gravity is of no use for floors: left out");
-    return result;
-  }
+  const double scale = ScaleOf(Median(std::move(norms)), result.warnings);
+  if (scale == 0.0) return result;
   result.usable = true;
   up.normalize();
   std::vector<Vertical> samples;
@@ -214,31 +250,7 @@ AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
   for (const Spell& spell : spells) {
     samples.push_back({spell.stamp, scale * up.dot(spell.acceleration_in_robot)});
   }
-
-  std::vector<TimeSpan> stays = {{samples.front().stamp, samples.back().stamp}};
-  if (track.Travels()) stays = track.Stays(options_.cab_radius, options_.least_stay_s);
-  for (const TimeSpan& stay : stays) {
-    const auto is_before = [](const Vertical& sample, double stamp) {
-      return sample.stamp < stamp;
-    };
-    const auto first = std::lower_bound(samples.begin(), samples.end(), stay.start, is_before);
-    const auto end = std::lower_bound(first, samples.end(), stay.end, is_before);
-    for (const Ride& ride :
-         RidesOfStay(samples, static_cast<std::size_t>(first - samples.begin()),
-                     static_cast<std::size_t>(end - samples.begin()), options_)) {
-      FloorTransit transit = TransitOf(ride);
-      if (track.Travels()) {
-        const TimeSpan whole = track.StayAround(transit.middle, options_.cab_radius);
-        transit.start = std::min(transit.start, whole.start);
-        transit.end = std::max(transit.end, whole.end);
-      }
-      if (result.transits.empty() || transit.start > result.transits.back().end) {
-        result.transits.push_back(transit);
-      } else {
-        result.transits.back() = Joined(result.transits.back(), transit);
-      }
-    }
-  }
+  result.transits = TransitsOf(samples, track, options_);
   const auto is_small = [&](const FloorTransit& transit) {
     return std::abs(*transit.climb) < LeastClimb(storeys) && std::isfinite(transit.start) &&
            std::isfinite(transit.end);

@@ -29,6 +29,8 @@ constexpr double kMapMargin = 1.0;  // m; more than a robot moves from one keyfr
 
 constexpr double kMostChi2 = 16.0;  // of three degrees of freedom: one in a thousand
 
+constexpr int kMostLost = 5;  // scans in a row that agree with nothing: this is another place
+
 double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& information) {
   const Eigen::Vector3d error(found.x - expected.x, found.y - expected.y,
                               WrapAngle(found.theta - expected.theta));
@@ -41,23 +43,21 @@ double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta 
 
 void ScanOdometry::Restart() {
   reach_m_ = std::numeric_limits<double>::infinity();
-  map_.reset();
-  next_map_.reset();
-  T_map_keyframe_.reset();
-  T_matched_robot_ = UncertainPose2{};
-  T_map_matched_ = T_map_robot_;
-  matched_heading_variance_ = 0.0;
+  maps_ = Maps{};
+  path_.T_matched_robot = UncertainPose2{};
+  path_.T_map_matched = path_.T_map_robot;
+  path_.heading_variance = 0.0;
   rest_scans_ = 0;
   lost_ = 0;
 }
 
 Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
                                                 const Eigen::Matrix3d& prior_information) const {
-  Alignment best = map_->Align(points, T_map_guess, prior_information);
+  Alignment best = maps_.current->Align(points, T_map_guess, prior_information);
   // The last corrected step done once more, where the wheels say something else.
-  const Pose2 T_map_repeated = T_map_matched_ * last_step_;
+  const Pose2 T_map_repeated = path_.T_map_matched * path_.last_step;
   if (Distance(T_map_repeated, T_map_guess) > options_.repeat_difference_m) {
-    const Alignment other = map_->Align(points, T_map_repeated, prior_information);
+    const Alignment other = maps_.current->Align(points, T_map_repeated, prior_information);
     if (other.inlier_share > best.inlier_share + 0.02) best = other;
   }
   if (best.inlier_share >= options_.min_inlier_share) return best;
@@ -65,8 +65,8 @@ Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const 
   for (const double turn_deg : {-4.0, 4.0, -8.0, 8.0, -12.0, 12.0}) {
     Pose2 guess = T_map_guess;
     guess.theta = WrapAngle(guess.theta + DegToRad(turn_deg));
-    const Alignment other =
-        map_->Align(points, guess, Eigen::Matrix3d::Identity() * 1e-3 + 0.05 * prior_information);
+    const Alignment other = maps_.current->Align(
+        points, guess, Eigen::Matrix3d::Identity() * 1e-3 + 0.05 * prior_information);
     if (other.inlier_share > best.inlier_share + 0.05) best = other;
   }
   return best;
@@ -90,124 +90,174 @@ Alignment ScanOdometry::AlignUnlessOverruled(const ScanPoints& points, const Pos
   constexpr double kFirmly = 25.0;  // a fifth of its sigma
   Eigen::Matrix3d firm = Eigen::Matrix3d::Zero();
   firm.topLeftCorner<2, 2>() = kFirmly / variance * along * along.transpose();
-  const Alignment held =
-      map_->AlignHeld(points, {T_map_guess.x, T_map_guess.y, aligned.T_map_robot.theta}, firm);
+  const Alignment held = maps_.current->AlignHeld(
+      points, {T_map_guess.x, T_map_guess.y, aligned.T_map_robot.theta}, firm);
   return aligned.inlier_share < held.inlier_share + options_.overruling_share ? held : aligned;
 }
 
-void ScanOdometry::AddKeyframe(const ScanPoints& points) {
-  if (!map_) map_.emplace(options_.map, T_map_robot_.Translation());
-  map_->Add(points, T_map_robot_);
-  if (next_map_) next_map_->Add(points, T_map_robot_);
-  const auto full = static_cast<std::size_t>(options_.keyframes_per_map);
-  if (!next_map_ && map_->scans() >= full) {
-    next_map_.emplace(options_.map, T_map_robot_.Translation());
-    next_map_->Add(points, T_map_robot_);
-  } else if (next_map_ && next_map_->scans() >= full) {
-    map_ = std::move(next_map_);
-    next_map_.emplace(options_.map, T_map_robot_.Translation());
-    next_map_->Add(points, T_map_robot_);
-  }
-  T_map_keyframe_ = T_map_robot_;
-}
-
+// The stages of a scan: Predict by the wheels, Match against the local map, Believe the match or
+// not, Fuse it with the wheels, and KeepMap.
 UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
                                      bool must_match) {
-  const ScanPoints::ConstPtr all_points = PointsInRobot(scan);
-  const ScanPoints::ConstPtr points = PointsWithin(all_points, reach_m_);
-  // Where the points of a map end, they would hold back a robot that moves on.
-  const ScanPoints::ConstPtr map_points = PointsWithin(all_points, reach_m_ + kMapMargin);
-  const Pose2 T_map_last = T_map_robot_;
-  UncertainPose2 step = T_last_now;
-  if (!map_) {
-    T_map_robot_ = T_map_robot_ * T_last_now.mean;
-    T_map_matched_ = T_map_robot_;
-    if (!map_points->empty()) AddKeyframe(*map_points);
-    return step;
+  const View view = ViewOf(scan);
+  if (!maps_.current) {
+    Begin(view, T_last_now.mean);
+    return T_last_now;
   }
-  T_matched_robot_ = T_matched_robot_ * T_last_now;
-  T_map_robot_ = T_map_matched_ * T_matched_robot_.mean;
-  heading_sigma_rad_ = std::numeric_limits<double>::infinity();
-  const double travelled = Distance(T_map_matched_, T_map_robot_);
-  const double turned = Turn(T_map_matched_, T_map_robot_);
-  // A wheel that says "at rest" is believed; a guess without wheels is not.
-  const bool is_sure = T_matched_robot_.covariance.topLeftCorner<2, 2>().trace() <
-                       options_.match_distance_m * options_.match_distance_m;
-  const bool is_at_rest = is_sure && travelled < options_.match_distance_m &&
-                          turned < DegToRad(options_.match_angle_deg);
-  if (!is_at_rest) rest_scans_ = 0;
+  const Pose2 T_map_last = path_.T_map_robot;
+  const bool is_at_rest = Predict(T_last_now);
   if (is_at_rest && !must_match) {
-    // Scans of a robot at rest err each on its own: a few more settle what a poor view left open.
-    const bool is_settled = std::sqrt(matched_heading_variance_) < DegToRad(options_.settled_deg);
-    if (is_settled || rest_scans_ >= options_.rest_scans) {
-      // A young map is as noisy as its few scans, and all that follows is held against it.
-      if (map_->scans() < static_cast<std::size_t>(options_.rest_scans)) {
-        map_->Add(*map_points, T_map_robot_);
-      }
+    if (NeedsNoMatch()) {
+      AddToYoungMap(view);
       // The next match answers for this step too: its uncertainty is not counted twice.
-      step.covariance.setZero();
-      return step;
+      return {T_last_now.mean, Eigen::Matrix3d::Zero()};
     }
     ++rest_scans_;
   }
-  const Eigen::Matrix3d motion_in_map =
-      (UncertainPose2{T_map_matched_, Eigen::Matrix3d::Zero()} * T_matched_robot_).covariance;
-  // The heading is filtered over scans. The position is not: along a blank corridor its uncertainty
-  // would grow until the little that walls seem to tell of the way overrules the wheels.
-  Eigen::Matrix3d predicted_in_map = motion_in_map;
-  predicted_in_map(2, 2) += matched_heading_variance_;
-  const Eigen::Matrix3d prior = FlooredInverse(predicted_in_map);
-  const Alignment aligned = AlignUnlessOverruled(*points, T_map_robot_, prior);
+  const Prediction predicted = PriorOf(is_at_rest);
+  const Alignment aligned = AlignUnlessOverruled(*view.points, path_.T_map_robot, predicted.prior);
   inlier_share_ = aligned.inlier_share;
-  // Where the scene may have become another one a match has to be good, and for a robot at rest no
-  // news.
-  const bool is_doubtful = must_match || std::isfinite(reach_m_);
-  const bool is_believed =
-      aligned.inlier_share >=
-          (is_doubtful ? options_.min_inlier_share : options_.lost_inlier_share) &&
-      !(is_doubtful && is_at_rest && Chi2(T_map_robot_, aligned.T_map_robot, prior) > kMostChi2);
-  if (is_believed) {
-    heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));
-    matched_heading_variance_ = (aligned.information + prior).inverse()(2, 2);
-    // Scans against one map err alike: a short step is worth its share of an alignment's
-    // covariance, and all of it only over the way on which the map itself has become another.
-    const double share = std::min(1.0, travelled / options_.decorrelation_distance_m +
-                                           turned / DegToRad(options_.decorrelation_angle_deg));
-    const Eigen::Matrix3d covariance_in_map =
-        (aligned.information / std::max(share, 1e-3) + FlooredInverse(motion_in_map)).inverse();
-    T_map_robot_ = aligned.T_map_robot;
-    last_step_ = Between(T_map_matched_, T_map_robot_);
-    const double c = std::cos(T_map_last.theta);
-    const double s = std::sin(T_map_last.theta);
-    Eigen::Matrix3d rotation;
-    rotation << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
-    step.mean = Between(T_map_last, T_map_robot_);
-    step.covariance = rotation * covariance_in_map * rotation.transpose();
-    lost_ = 0;
-  } else {
-    step.covariance = T_matched_robot_.covariance;
-    matched_heading_variance_ = predicted_in_map(2, 2);
-  }
-  if (!is_believed && ++lost_ >= 5) {
-    // Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
-    map_.reset();
-    next_map_.reset();
-    matched_heading_variance_ = 0.0;
-    lost_ = 0;
-    if (!map_points->empty()) AddKeyframe(*map_points);
-  }
-  T_map_matched_ = T_map_robot_;
-  T_matched_robot_ = UncertainPose2{};
-  if (lost_ != 0) return step;
-  if (!T_map_keyframe_ ||
-      Distance(*T_map_keyframe_, T_map_robot_) >= options_.keyframe_distance_m ||
-      Turn(*T_map_keyframe_, T_map_robot_) >= DegToRad(options_.keyframe_angle_deg)) {
-    AddKeyframe(*map_points);
-  } else if (rest_scans_ > 0 && map_->scans() < static_cast<std::size_t>(options_.rest_scans)) {
-    // A young map is as noisy as its few scans, and all that follows is held against it.
-    map_->Add(*map_points, T_map_robot_);
-  }
+  const bool is_believed = Believe(aligned, predicted, must_match);
+  const UncertainPose2 step =
+      is_believed ? Fuse(aligned, predicted, T_map_last) : GoOnByWheels(T_last_now.mean, predicted);
+  lost_ = is_believed ? 0 : lost_ + 1;
+  path_.T_map_matched = path_.T_map_robot;
+  path_.T_matched_robot = UncertainPose2{};
+  if (lost_ >= kMostLost) BeginAnew(view);
+  if (lost_ == 0) KeepMap(view);
   return step;
+}
+
+ScanOdometry::View ScanOdometry::ViewOf(const LaserScan& scan) const {
+  const ScanPoints::ConstPtr all_points = PointsInRobot(scan);
+  return {PointsWithin(all_points, reach_m_), PointsWithin(all_points, reach_m_ + kMapMargin)};
+}
+
+void ScanOdometry::Begin(const View& view, const Pose2& T_last_now) {
+  path_.T_map_robot = path_.T_map_robot * T_last_now;
+  path_.T_map_matched = path_.T_map_robot;
+  if (!view.map_points->empty()) AddKeyframe(*view.map_points);
+}
+
+/// Whether the robot is where it was matched last. A wheel that says so is believed; a guess
+/// without wheels is not.
+bool ScanOdometry::Predict(const UncertainPose2& T_last_now) {
+  path_.T_matched_robot = path_.T_matched_robot * T_last_now;
+  path_.T_map_robot = path_.T_map_matched * path_.T_matched_robot.mean;
+  heading_sigma_rad_ = std::numeric_limits<double>::infinity();
+  const bool is_sure = path_.T_matched_robot.covariance.topLeftCorner<2, 2>().trace() <
+                       options_.match_distance_m * options_.match_distance_m;
+  const bool is_at_rest =
+      is_sure && Distance(path_.T_map_matched, path_.T_map_robot) < options_.match_distance_m &&
+      Turn(path_.T_map_matched, path_.T_map_robot) < DegToRad(options_.match_angle_deg);
+  if (!is_at_rest) rest_scans_ = 0;
+  return is_at_rest;
+}
+
+// Scans of a robot at rest err each on its own: a few more settle what a poor view left open.
+bool ScanOdometry::NeedsNoMatch() const {
+  return std::sqrt(path_.heading_variance) < DegToRad(options_.settled_deg) ||
+         rest_scans_ >= options_.rest_scans;
+}
+
+// The heading is filtered over scans. The position is not: along a blank corridor its uncertainty
+// would grow until the little that walls seem to tell of the way overrules the wheels.
+ScanOdometry::Prediction ScanOdometry::PriorOf(bool is_at_rest) const {
+  Prediction predicted;
+  predicted.travelled_m = Distance(path_.T_map_matched, path_.T_map_robot);
+  predicted.turned_rad = Turn(path_.T_map_matched, path_.T_map_robot);
+  predicted.is_at_rest = is_at_rest;
+  predicted.motion_in_map =
+      (UncertainPose2{path_.T_map_matched, Eigen::Matrix3d::Zero()} * path_.T_matched_robot)
+          .covariance;
+  Eigen::Matrix3d predicted_in_map = predicted.motion_in_map;
+  predicted_in_map(2, 2) += path_.heading_variance;
+  predicted.heading_variance = predicted_in_map(2, 2);
+  predicted.prior = FlooredInverse(predicted_in_map);
+  return predicted;
+}
+
+// Where the scene may have become another one a match has to be good, and for a robot at rest no
+// news.
+bool ScanOdometry::Believe(const Alignment& aligned, const Prediction& predicted,
+                           bool must_match) const {
+  const bool is_doubtful = must_match || std::isfinite(reach_m_);
+  if (!is_doubtful) return aligned.inlier_share >= options_.lost_inlier_share;
+  return aligned.inlier_share >= options_.min_inlier_share &&
+         !(predicted.is_at_rest &&
+           Chi2(path_.T_map_robot, aligned.T_map_robot, predicted.prior) > kMostChi2);
+}
+
+// Scans against one map err alike: a short step is worth its share of an alignment's covariance,
+// and all of it only over the way on which the map itself has become another.
+UncertainPose2 ScanOdometry::Fuse(const Alignment& aligned, const Prediction& predicted,
+                                  const Pose2& T_map_last) {
+  heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));
+  path_.heading_variance = (aligned.information + predicted.prior).inverse()(2, 2);
+  const double share =
+      std::min(1.0, predicted.travelled_m / options_.decorrelation_distance_m +
+                        predicted.turned_rad / DegToRad(options_.decorrelation_angle_deg));
+  const Eigen::Matrix3d covariance_in_map =
+      (aligned.information / std::max(share, 1e-3) + FlooredInverse(predicted.motion_in_map))
+          .inverse();
+  path_.T_map_robot = aligned.T_map_robot;
+  path_.last_step = Between(path_.T_map_matched, path_.T_map_robot);
+  const double c = std::cos(T_map_last.theta);
+  const double s = std::sin(T_map_last.theta);
+  Eigen::Matrix3d rotation;
+  rotation << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
+  return {Between(T_map_last, path_.T_map_robot),
+          rotation * covariance_in_map * rotation.transpose()};
+}
+
+UncertainPose2 ScanOdometry::GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted) {
+  path_.heading_variance = predicted.heading_variance;
+  return {by_wheels, path_.T_matched_robot.covariance};
+}
+
+// Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
+void ScanOdometry::BeginAnew(const View& view) {
+  maps_.current.reset();
+  maps_.next.reset();
+  path_.heading_variance = 0.0;
+  lost_ = 0;
+  if (!view.map_points->empty()) AddKeyframe(*view.map_points);
+}
+
+void ScanOdometry::KeepMap(const View& view) {
+  const std::optional<Pose2>& T_map_keyframe = maps_.T_map_keyframe;
+  if (!T_map_keyframe ||
+      Distance(*T_map_keyframe, path_.T_map_robot) >= options_.keyframe_distance_m ||
+      Turn(*T_map_keyframe, path_.T_map_robot) >= DegToRad(options_.keyframe_angle_deg)) {
+    AddKeyframe(*view.map_points);
+  } else if (rest_scans_ > 0) {
+    AddToYoungMap(view);
+  }
+}
+
+// A young map is as noisy as its few scans, and all that follows is held against it.
+void ScanOdometry::AddToYoungMap(const View& view) {
+  if (maps_.current->scans() < static_cast<std::size_t>(options_.rest_scans)) {
+    maps_.current->Add(*view.map_points, path_.T_map_robot);
+  }
+}
+
+void ScanOdometry::AddKeyframe(const ScanPoints& points) {
+  const auto begin_next = [&] {
+    maps_.next.emplace(options_.map, path_.T_map_robot.Translation());
+    maps_.next->Add(points, path_.T_map_robot);
+  };
+  if (!maps_.current) maps_.current.emplace(options_.map, path_.T_map_robot.Translation());
+  maps_.current->Add(points, path_.T_map_robot);
+  if (maps_.next) maps_.next->Add(points, path_.T_map_robot);
+  const auto full = static_cast<std::size_t>(options_.keyframes_per_map);
+  if (!maps_.next && maps_.current->scans() >= full) {
+    begin_next();
+  } else if (maps_.next && maps_.next->scans() >= full) {
+    maps_.current = std::move(maps_.next);
+    begin_next();
+  }
+  maps_.T_map_keyframe = path_.T_map_robot;
 }
 
 }  // namespace masked_mapper

@@ -61,19 +61,61 @@ class ScanOdometry {
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
-    archive(T_map_robot_, T_map_keyframe_, T_matched_robot_, T_map_matched_, last_step_);
-    for (std::optional<LocalMap>* map : {&map_, &next_map_}) {
+    archive(path_.T_map_robot, maps_.T_map_keyframe, path_.T_matched_robot, path_.T_map_matched,
+            path_.last_step);
+    for (std::optional<LocalMap>* map : {&maps_.current, &maps_.next}) {
       bool present = map->has_value();
       archive(present);
       if (present && !*map) map->emplace(options_.map, Eigen::Vector2d::Zero());
       if (!present) map->reset();
       if (present) archive(**map);
     }
-    archive(matched_heading_variance_, rest_scans_, heading_sigma_rad_, inlier_share_, reach_m_,
+    archive(path_.heading_variance, rest_scans_, heading_sigma_rad_, inlier_share_, reach_m_,
             lost_);
   }
 
  private:
+  /// Where the robot is in the local map, and how that is known.
+  struct Path {
+    Pose2 T_map_robot;               ///< of the scan seen last
+    UncertainPose2 T_matched_robot;  ///< by wheels since the scan matched last
+    Pose2 T_map_matched;
+    Pose2 last_step;                ///< from the match before last to the last
+    double heading_variance = 0.0;  ///< of T_map_matched, rad^2
+  };
+  struct Maps {
+    std::optional<LocalMap> current;      ///< matched against
+    std::optional<LocalMap> next;         ///< grows until it is large enough to take over
+    std::optional<Pose2> T_map_keyframe;  ///< of the scan added last
+  };
+  /// What is looked at of a scan.
+  struct View {
+    ScanPoints::ConstPtr points;
+    /// Where the points of a map end, they would hold back a robot that moves on: it gets more.
+    ScanPoints::ConstPtr map_points;
+  };
+  /// What the wheels say since the scan matched last.
+  struct Prediction {
+    double travelled_m = 0.0;
+    double turned_rad = 0.0;
+    bool is_at_rest = false;
+    Eigen::Matrix3d motion_in_map = Eigen::Matrix3d::Zero();  ///< covariance
+    double heading_variance = 0.0;                            ///< with that of the last match
+    Eigen::Matrix3d prior = Eigen::Matrix3d::Zero();          ///< information for the match
+  };
+
+  View ViewOf(const LaserScan& scan) const;
+  void Begin(const View& view, const Pose2& T_last_now);
+  bool Predict(const UncertainPose2& T_last_now);
+  Prediction PriorOf(bool is_at_rest) const;
+  bool NeedsNoMatch() const;
+  bool Believe(const Alignment& aligned, const Prediction& predicted, bool must_match) const;
+  UncertainPose2 Fuse(const Alignment& aligned, const Prediction& predicted,
+                      const Pose2& T_map_last);
+  UncertainPose2 GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted);
+  void BeginAnew(const View& view);
+  void KeepMap(const View& view);
+  void AddToYoungMap(const View& view);
   void AddKeyframe(const ScanPoints& points);
   Alignment AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
                                  const Eigen::Matrix3d& prior_information) const;
@@ -81,19 +123,13 @@ class ScanOdometry {
                                     const Eigen::Matrix3d& prior_information) const;
 
   ScanOdometryOptions options_;
-  Pose2 T_map_robot_;                    ///< of the scan seen last
-  std::optional<Pose2> T_map_keyframe_;  ///< of the scan added last
-  UncertainPose2 T_matched_robot_;       ///< by wheels since the scan matched last
-  Pose2 T_map_matched_;
-  Pose2 last_step_;                        ///< from the match before last to the last
-  std::optional<LocalMap> map_;            ///< matched against
-  std::optional<LocalMap> next_map_;       ///< grows until it is large enough to take over
-  double matched_heading_variance_ = 0.0;  ///< of T_map_matched_, rad^2
-  int rest_scans_ = 0;                     ///< matched since the robot came to rest
+  Path path_;
+  Maps maps_;
+  double reach_m_ = std::numeric_limits<double>::infinity();
+  int rest_scans_ = 0;  ///< matched since the robot came to rest
+  int lost_ = 0;        ///< scans in a row that were not believed
   double heading_sigma_rad_ = std::numeric_limits<double>::infinity();
   double inlier_share_ = 1.0;
-  double reach_m_ = std::numeric_limits<double>::infinity();
-  int lost_ = 0;  ///< scans in a row that were not believed
 };
 
 }  // namespace masked_mapper
