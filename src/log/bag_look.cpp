@@ -32,12 +32,21 @@ class BagLook {
       const bool long_enough = message->time > *begin + kLongestLook;
       if (SawScans() && (long_enough || KnowsEverything())) break;
     }
-    if (scans_ == 0) throw InputError(path + ": holds no scan that can be read");
+    CheckScanners(path);
     Conclude();
     return std::move(plan_);
   }
 
  private:
+  void CheckScanners(const std::string& path) const {
+    if (scans_ == 0) throw InputError(path + ": holds no scan that can be read");
+    for (std::size_t i = 0; i < plan_.scanners; ++i) {
+      if (scan_frames_[i]) continue;
+      throw InputError(path + ": log.scan_topic: `" + plan_.topics[i].name +
+                       "` holds no scan that can be read");
+    }
+  }
+
   void Add(std::size_t stream, const BagMessage& message) {
     const BagTopic& topic = plan_.topics[stream];
     switch (topic.kind) {

@@ -99,6 +99,9 @@ class TopicChoice {
     if (!given.empty()) {
       std::vector<std::string> picked = SplitAtCommas(given);
       for (const std::string& name : picked) {
+        if (std::count(picked.begin(), picked.end(), name) > 1) {
+          throw InputError(path_ + ": " + option + ": names `" + name + "` twice");
+        }
         if (std::find(candidates.begin(), candidates.end(), name) != candidates.end()) continue;
         throw InputError(path_ + ": " + option + ": no " + what + " topic `" + name + "`" +
                          DidYouMean(name, candidates) + "; the bag has " +
