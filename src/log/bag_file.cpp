@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/bag_file.hpp"
 
-#include <bzlib.h>
-#include <lz4frame.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -13,14 +11,15 @@
 #include <string_view>
 #include <vector>
 
+#include "bag_compression.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "record_file.hpp"
 
 namespace masked_mapper {
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V";
 constexpr std::string_view kVersionLine = "#ROSBAG V2.0\n";
-constexpr std::uint32_t kLargestHeader = 1U << 20U;
 // Recorders close a chunk at 768 kB; one message of many megabytes may make it longer.
 constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 constexpr std::uint64_t kLargestConnection = std::uint64_t{4} << 20U;
@@ -37,128 +36,13 @@ enum Op : int {
 
 using Bytes = std::vector<unsigned char>;
 
-std::uint64_t LittleEndian(const unsigned char* bytes, std::size_t count) {
-  std::uint64_t value = 0;
-  for (std::size_t i = count; i-- > 0;) value = (value << 8U) | bytes[i];
-  return value;
-}
-
-/// The header of a record: fields `name=value`, each with its length before it.
-class RecordHeader {
- public:
-  /// False when the lengths do not add up.
-  bool Parse(const unsigned char* data, std::size_t size) {
-    data_ = data;
-    size_ = size;
-    std::size_t at = 0;
-    while (at < size) {
-      if (size - at < 4) return false;
-      const std::size_t length = LittleEndian(data + at, 4);
-      at += 4;
-      if (length > size - at || std::memchr(data + at, '=', length) == nullptr) return false;
-      at += length;
-    }
-    return true;
-  }
-
-  /// The value of a field; empty when there is none.
-  std::string_view Find(std::string_view name) const {
-    std::size_t at = 0;
-    while (at < size_) {
-      const std::size_t length = LittleEndian(data_ + at, 4);
-      const std::string_view field(reinterpret_cast<const char*>(data_ + at + 4), length);
-      const std::size_t equals = field.find('=');
-      if (field.substr(0, equals) == name) return field.substr(equals + 1);
-      at += 4 + length;
-    }
-    return {};
-  }
-
-  /// A number of exactly `size` bytes.
-  std::optional<std::uint64_t> Number(std::string_view name, std::size_t size) const {
-    const std::string_view value = Find(name);
-    if (value.size() != size) return std::nullopt;
-    return LittleEndian(reinterpret_cast<const unsigned char*>(value.data()), size);
-  }
-
-  int op() const { return static_cast<int>(Number("op", 1).value_or(0)); }
-
- private:
-  const unsigned char* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-/// Grows `out` to hold what a decompressor may write next: at most `limit` in all.
-void Grow(std::size_t used, std::size_t limit, Bytes* out) {
-  if (used == out->size()) out->resize(std::min(limit, std::max<std::size_t>(1U << 16U, 2 * used)));
-}
-
-/// Both give the good part of a damaged stream, and whether it was whole. Memory grows with what
-/// the stream really holds, not with what its header promises.
-bool DecompressBz2(const Bytes& packed, std::size_t limit, Bytes* out) {
-  bz_stream stream{};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
-  stream.next_in = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));
-  stream.avail_in = static_cast<unsigned>(packed.size());
-  out->clear();
-  std::size_t used = 0;
-  int status = BZ_OK;
-  while (status == BZ_OK && used < limit) {
-    Grow(used, limit, out);
-    const auto room = static_cast<unsigned>(out->size() - used);
-    const unsigned in_before = stream.avail_in;
-    stream.next_out = reinterpret_cast<char*>(out->data() + used);
-    stream.avail_out = room;
-    status = BZ2_bzDecompress(&stream);
-    used += room - stream.avail_out;
-    if (stream.avail_out == room && stream.avail_in == in_before) break;
-  }
-  BZ2_bzDecompressEnd(&stream);
-  out->resize(used);
-  return status == BZ_STREAM_END || used == limit;
-}
-
-bool DecompressLz4(const Bytes& packed, std::size_t limit, Bytes* out) {
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) {
-    throw std::bad_alloc();
-  }
-  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
-      context, &LZ4F_freeDecompressionContext);
-  out->clear();
-  std::size_t used = 0;
-  std::size_t consumed = 0;
-  bool whole = false;
-  while (used < limit) {
-    Grow(used, limit, out);
-    std::size_t in_size = packed.size() - consumed;
-    std::size_t out_size = out->size() - used;
-    const std::size_t status = LZ4F_decompress(context, out->data() + used, &out_size,
-                                               packed.data() + consumed, &in_size, nullptr);
-    if (LZ4F_isError(status) != 0) break;
-    consumed += in_size;
-    used += out_size;
-    whole = status == 0;
-    if (whole || (in_size == 0 && out_size == 0)) break;
-  }
-  out->resize(used);
-  return whole || used == limit;
-}
-
 }  // namespace
 
 class BagFile::Impl {
  public:
-  explicit Impl(const std::string& path) : path_(path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
-      throw InputError(path + ": is no file that can be read");
-    }
-    size_ = static_cast<std::uint64_t>(status.st_size);
-    file_.reset(std::fopen(path.c_str(), "rb"));
-    if (!file_) throw InputError(path + ": " + std::strerror(errno));
+  explicit Impl(const std::string& path) : path_(path), file_(path) {
     CheckVersion();
-    first_record_ = position_;
+    first_record_ = file_.position();
     ReadIndex();
     Rewind();
   }
@@ -176,7 +60,7 @@ class BagFile::Impl {
   }
 
   void Rewind() {
-    Seek(first_record_);
+    file_.Seek(first_record_);
     chunk_.clear();
     chunk_position_ = 0;
     at_end_ = false;
@@ -189,17 +73,14 @@ class BagFile::Impl {
   bool truncated() const { return truncated_; }
   std::uint64_t damaged() const { return damaged_; }
   double Progress() const {
-    return at_end_ ? 1.0 : static_cast<double>(position_) / static_cast<double>(size_);
+    return at_end_ ? 1.0
+                   : static_cast<double>(file_.position()) / static_cast<double>(file_.size());
   }
 
  private:
-  struct FileCloser {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-
   void CheckVersion() {
     Bytes line;
-    Read(std::min<std::uint64_t>(size_, kVersionLine.size()), &line);
+    file_.Read(std::min<std::uint64_t>(file_.size(), kVersionLine.size()), &line);
     const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
     if (text == kVersionLine) return;
     if (text.substr(0, kMagic.size()) != kMagic) throw InputError(path_ + ": is not a ROS bag");
@@ -212,23 +93,23 @@ class BagFile::Impl {
   void ReadIndex() {
     RecordHeader header;
     std::uint64_t data_size = 0;
-    if (!ReadHeader(&header, &data_size) || header.op() != kBagHeader) return;
+    if (!file_.ReadHeader(&header, &data_size) || header.op() != kBagHeader) return;
     if (!header.Find("encryptor").empty()) {
       throw InputError(path_ + ": is an encrypted ROS bag, which cannot be read");
     }
     const std::uint64_t index = header.Number("index_pos", 8).value_or(0);
     const std::uint64_t connections = header.Number("conn_count", 4).value_or(0);
     const std::uint64_t chunks = header.Number("chunk_count", 4).value_or(0);
-    if (index <= position_ || index >= size_) return;
-    Seek(index);
+    if (index <= file_.position() || index >= file_.size()) return;
+    file_.Seek(index);
     for (std::uint64_t i = 0; i < connections; ++i) {
-      if (!ReadHeader(&header, &data_size) || header.op() != kConnection ||
+      if (!file_.ReadHeader(&header, &data_size) || header.op() != kConnection ||
           !ReadConnection(header, data_size)) {
         return;
       }
     }
     for (std::uint64_t i = 0; i < chunks; ++i) {
-      if (!ReadHeader(&header, &data_size) || header.op() != kChunkInfo) return;
+      if (!file_.ReadHeader(&header, &data_size) || header.op() != kChunkInfo) return;
       chunk_positions_.insert(header.Number("chunk_pos", 8).value_or(0));
       Skip(data_size);
     }
@@ -236,12 +117,12 @@ class BagFile::Impl {
   }
 
   std::optional<BagMessage> NextInFile() {
-    const std::uint64_t record = position_;
+    const std::uint64_t record = file_.position();
     RecordHeader header;
     std::uint64_t data_size = 0;
-    if (position_ == size_) {
+    if (file_.position() == file_.size()) {
       at_end_ = true;
-    } else if (!ReadHeader(&header, &data_size)) {
+    } else if (!file_.ReadHeader(&header, &data_size)) {
       ResumeBehind(record);
     } else if (header.op() == kChunk) {
       LoadChunk(header, data_size);
@@ -249,11 +130,11 @@ class BagFile::Impl {
       if (!ReadConnection(header, data_size)) ResumeBehind(record);
     } else if (header.op() == kMessage) {
       // Of a recorder that died before it closed its chunk.
-      if (data_size > std::min(size_ - position_, kLargestChunk)) {
+      if (data_size > std::min(file_.left(), kLargestChunk)) {
         ResumeBehind(record);
         return std::nullopt;
       }
-      Read(data_size, &chunk_);
+      file_.Read(data_size, &chunk_);
       chunk_position_ = chunk_.size();
       return Message(header, chunk_.data(), chunk_.size());
     } else if (header.op() == kIndex) {
@@ -274,11 +155,11 @@ class BagFile::Impl {
   void ResumeBehind(std::uint64_t record) {
     truncated_ = true;
     const auto next = chunk_positions_.upper_bound(record);
-    if (next == chunk_positions_.end() || *next >= size_) {
+    if (next == chunk_positions_.end() || *next >= file_.size()) {
       at_end_ = true;
     } else {
       ++damaged_;
-      Seek(*next);
+      file_.Seek(*next);
     }
   }
 
@@ -333,10 +214,10 @@ class BagFile::Impl {
   void LoadChunk(const RecordHeader& header, std::uint64_t data_size) {
     const std::string compression(header.Find("compression"));
     const std::uint64_t full_size = header.Number("size", 4).value_or(0);
-    chunk_is_cut_ = data_size > size_ - position_;
+    chunk_is_cut_ = data_size > file_.left();
     if (chunk_is_cut_) {
       truncated_ = true;
-      data_size = size_ - position_;
+      data_size = file_.left();
     }
     chunk_.clear();
     chunk_position_ = 0;
@@ -346,10 +227,10 @@ class BagFile::Impl {
       return;
     }
     if (compression == "none") {
-      Read(data_size, &chunk_);
+      file_.Read(data_size, &chunk_);
       return;
     }
-    Read(data_size, &packed_);
+    file_.Read(data_size, &packed_);
     bool whole = false;
     if (compression == "bz2") whole = DecompressBz2(packed_, full_size, &chunk_);
     if (compression == "lz4") whole = DecompressLz4(packed_, full_size, &chunk_);
@@ -358,14 +239,14 @@ class BagFile::Impl {
   }
 
   bool ReadConnection(const RecordHeader& header, std::uint64_t data_size) {
-    if (data_size > size_ - position_) return false;
+    if (data_size > file_.left()) return false;
     if (data_size > kLargestConnection) {
       ++damaged_;
       Skip(data_size);
       return true;
     }
-    // The fields of `header` live in header_bytes_, which Read() leaves alone.
-    Read(data_size, &packed_);
+    // The fields of `header` stay while data is read.
+    file_.Read(data_size, &packed_);
     AddConnection(header, packed_.data(), packed_.size());
     return true;
   }
@@ -385,52 +266,10 @@ class BagFile::Impl {
     connections_.emplace(static_cast<std::uint32_t>(*id), std::move(connection));
   }
 
-  /// The header of the record at the position, and the length of its data, whose first byte is then
-  /// the position.
-  bool ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
-    std::uint64_t header_size = 0;
-    if (!ReadLength(&header_size)) return false;
-    if (header_size > std::min<std::uint64_t>(kLargestHeader, size_ - position_)) return false;
-    Read(header_size, &header_bytes_);
-    return header->Parse(header_bytes_.data(), header_bytes_.size()) && ReadLength(data_size);
-  }
-
-  bool ReadLength(std::uint64_t* length) {
-    unsigned char bytes[4];
-    if (size_ - position_ < 4 || std::fread(bytes, 1, 4, file_.get()) != 4) return false;
-    position_ += 4;
-    *length = LittleEndian(bytes, 4);
-    return true;
-  }
-
-  /// `count` is at most what the file still has.
-  void Read(std::uint64_t count, Bytes* bytes) {
-    bytes->resize(count);
-    if (std::fread(bytes->data(), 1, count, file_.get()) != count) {
-      throw InputError(path_ + ": cannot be read");
-    }
-    position_ += count;
-  }
-
-  void Skip(std::uint64_t count) {
-    if (count > size_ - position_) {
-      truncated_ = true;
-      count = size_ - position_;
-    }
-    Seek(position_ + count);
-  }
-
-  void Seek(std::uint64_t position) {
-    if (::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
-      throw InputError(path_ + ": cannot be read");
-    }
-    position_ = position;
-  }
+  void Skip(std::uint64_t count) { truncated_ = !file_.Skip(count) || truncated_; }
 
   std::string path_;
-  std::unique_ptr<std::FILE, FileCloser> file_;
-  std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;
+  RecordFile file_;
   std::uint64_t first_record_ = 0;
   std::set<std::uint64_t> chunk_positions_;
   std::map<std::uint32_t, BagConnection> connections_;
@@ -438,7 +277,6 @@ class BagFile::Impl {
   bool at_end_ = false;
   bool truncated_ = false;
   std::uint64_t damaged_ = 0;
-  Bytes header_bytes_;
   Bytes packed_;
   Bytes chunk_;
   std::size_t chunk_position_ = 0;

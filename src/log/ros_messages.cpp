@@ -1,170 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/ros_messages.hpp"
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/exceptions/Exception.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "masked_mapper/geometry/angle.hpp"
+#include "ros_fields.hpp"
 
 namespace masked_mapper {
 namespace {
 
 constexpr double kLargestCoordinate = 1e8;  // m
 constexpr std::size_t kMostBeams = 100000;
-constexpr std::size_t kLongestFrame = 256;
-
-std::string FrameId(std::string frame) {
-  return frame.empty() || frame.front() != '/' ? frame : frame.substr(1);
-}
-
-/// Reads fields one after the other; once one does not fit, nothing does, and good() is false.
-class Ros1Fields {
- public:
-  Ros1Fields(const unsigned char* data, std::size_t size) : data_(data), left_(size) {}
-
-  bool good() const { return good_; }
-
-  template <typename T>
-  T Number() {
-    T value{};
-    const unsigned char* bytes = Take(sizeof(T));
-    // ROS is little-endian, and so is every machine that this is built for.
-    if (bytes != nullptr) std::memcpy(&value, bytes, sizeof(T));
-    return value;
-  }
-
-  template <typename T>
-  void Skip(std::size_t count) {
-    Take(count * sizeof(T));
-  }
-
-  /// The number of elements of at least `element_size` bytes each that follow.
-  std::size_t Count(std::size_t element_size) {
-    const auto count = Number<std::uint32_t>();
-    if (count > left_ / element_size) good_ = false;
-    return good_ ? count : 0;
-  }
-
-  std::string String() {
-    const std::size_t size = Count(1);
-    const unsigned char* bytes = Take(size);
-    if (bytes == nullptr || size > kLongestFrame) return {};
-    return {reinterpret_cast<const char*>(bytes), size};
-  }
-
-  std::vector<float> Floats() {
-    const std::size_t count = Count(sizeof(float));
-    const unsigned char* bytes = Take(count * sizeof(float));
-    std::vector<float> values(bytes == nullptr ? 0 : count);
-    if (!values.empty()) std::memcpy(values.data(), bytes, count * sizeof(float));
-    return values;
-  }
-
-  RosHeader Header() {
-    RosHeader header;
-    Number<std::uint32_t>();  // seq
-    const auto seconds = Number<std::uint32_t>();
-    const auto nanoseconds = Number<std::uint32_t>();
-    header.stamp = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
-    header.frame_id = FrameId(String());
-    return header;
-  }
-
- private:
-  const unsigned char* Take(std::size_t count) {
-    if (!good_ || count > left_) {
-      good_ = false;
-      return nullptr;
-    }
-    const unsigned char* bytes = data_;
-    data_ += count;
-    left_ -= count;
-    return bytes;
-  }
-
-  const unsigned char* data_;
-  std::size_t left_;
-  bool good_ = true;
-};
-
-/// The same of a ROS 2 message: CDR, of either byte order, each number aligned to its size. Counts
-/// are checked here before anything is allocated; the library checks single fields.
-class CdrFields {
- public:
-  CdrFields(const unsigned char* data, std::size_t size)
-      : size_(size),
-        // Read only, but the library knows no such buffer.
-        buffer_(const_cast<char*>(reinterpret_cast<const char*>(data)), size),
-        cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
-    Try([this] { cdr_.read_encapsulation(); });
-  }
-
-  bool good() const { return good_; }
-
-  template <typename T>
-  T Number() {
-    T value{};
-    Try([this, &value] { cdr_ >> value; });
-    return good_ ? value : T{};
-  }
-
-  template <typename T>
-  void Skip(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) Number<T>();
-  }
-
-  std::size_t Count(std::size_t element_size) {
-    const auto count = Number<std::uint32_t>();
-    if (good_ && count > (size_ - cdr_.getSerializedDataLength()) / element_size) good_ = false;
-    return good_ ? count : 0;
-  }
-
-  std::string String() {
-    std::string text = Array<std::string>(Count(1), '\0');
-    while (!text.empty() && text.back() == '\0') text.pop_back();
-    if (text.size() > kLongestFrame) text.clear();
-    return text;
-  }
-
-  std::vector<float> Floats() { return Array<std::vector<float>>(Count(sizeof(float)), 0.0F); }
-
-  RosHeader Header() {
-    RosHeader header;
-    const auto seconds = Number<std::int32_t>();
-    const auto nanoseconds = Number<std::uint32_t>();
-    header.stamp = static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
-    header.frame_id = FrameId(String());
-    return header;
-  }
-
- private:
-  template <typename Read>
-  void Try(const Read& read) {
-    if (!good_) return;
-    try {
-      read();
-    } catch (const eprosima::fastcdr::exception::Exception&) {
-      good_ = false;
-    }
-  }
-
-  template <typename Values, typename T>
-  Values Array(std::size_t count, T empty) {
-    Values values(count, empty);
-    if (count > 0) Try([this, &values, count] { cdr_.deserializeArray(values.data(), count); });
-    return good_ ? values : Values{};
-  }
-
-  std::size_t size_;
-  eprosima::fastcdr::FastBuffer buffer_;
-  eprosima::fastcdr::Cdr cdr_;
-  bool good_ = true;
-};
 
 /// What `parse` makes of the fields in a message.
 template <typename Parse>

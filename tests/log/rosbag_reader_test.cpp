@@ -195,6 +195,23 @@ TEST(OpenRosBagTest, RefusesWithOneLine) {
   EXPECT_NE(Message(silent.path()).find("no scan that can be read"), std::string::npos);
 }
 
+TEST(OpenRosBagTest, EveryScannerThatIsNamedMustSpeakAndBeNamedOnce) {
+  const std::string records =
+      ConnectionRecord(1, "/front", "sensor_msgs/LaserScan", kLaserScanMd5) +
+      ConnectionRecord(2, "/rear", "sensor_msgs/LaserScan", kLaserScanMd5) +
+      MessageRecord(1, 5, LaserScanBytes(5, 9)) + MessageRecord(1, 6, LaserScanBytes(6, 9));
+  const TemporaryFile file(".bag", BagMagic() + BagHeaderRecord(0, 0, 0) + ChunkRecord(records));
+  LogOptions options;
+  options.scan_topic = "/front,/rear";
+  EXPECT_NE(Message(file.path(), options).find("`/rear` holds no scan"), std::string::npos);
+  options.scan_topic = "/rear,/front";
+  EXPECT_NE(Message(file.path(), options).find("`/rear` holds no scan"), std::string::npos);
+  options.scan_topic = "/front, /front";
+  EXPECT_NE(Message(file.path(), options).find("names `/front` twice"), std::string::npos);
+  options.scan_topic = "/front";
+  EXPECT_EQ(ReadAll(file.path(), options).scans.size(), 2U);
+}
+
 TEST(OpenRosBagTest, MalformedMessagesAreSkippedAndCounted) {
   const std::string records =
       ConnectionRecord(1, "/scan", "sensor_msgs/LaserScan", kLaserScanMd5) +

@@ -56,8 +56,8 @@ Checkpoint Kept(MaskedMapper& mapper) {
   return checkpoint;
 }
 
-MappingResult Unbroken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
-                       const FloorTimeline& floors) {
+MappingResult Unbroken(const RingDrive& drive, const std::string& mask,
+                       const MappingOptions& options, const FloorTimeline& floors) {
   MaskedMapper mapper(mask, options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
   return mapper.Finish();

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages of a bag in, observations in order out; the counting.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "bag_plan.hpp"
+#include "masked_mapper/log/odometry_at_scans.hpp"
+#include "masked_mapper/log/scan_merger.hpp"
+#include "masked_mapper/log/stamp_mender.hpp"
+
+namespace masked_mapper {
+
+/// Scans of several scanners become one; everything else keeps its place in the order of stamps.
+class InOrder {
+ public:
+  explicit InOrder(std::size_t scanners) : scanners_(scanners), merger_(scanners) {}
+
+  void Add(Observation observation, std::size_t scanner) {
+    auto* scan = std::get_if<LaserScan>(&observation);
+    if (scan == nullptr || scanners_ == 1) {
+      waiting_.emplace_back(std::move(observation));
+      return;
+    }
+    if (scanner == 0) waiting_.emplace_back(std::nullopt);  // its place
+    merger_.Add(std::move(*scan), scanner);
+  }
+
+  void Finish() { merger_.Finish(); }
+
+  std::optional<Observation> Next() {
+    if (waiting_.empty()) return std::nullopt;
+    if (!waiting_.front()) {
+      std::optional<LaserScan> merged = merger_.Next();
+      if (!merged) return std::nullopt;
+      waiting_.front() = std::move(*merged);
+    }
+    std::optional<Observation> next = std::move(waiting_.front());
+    waiting_.pop_front();
+    return next;
+  }
+
+ private:
+  std::size_t scanners_;
+  ScanMerger merger_;
+  std::deque<std::optional<Observation>> waiting_;
+};
+
+class BagObservations {
+ public:
+  /// All three must outlive it.
+  BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag);
+
+  void Add(const BagMessage& message);
+  /// No more will come.
+  void Finish();
+  /// The next observation that is ready.
+  std::optional<Observation> Next();
+  LogStatistics Statistics() const;
+
+ private:
+  /// From the mender to the odometry to the order of what is handed out.
+  void MoveOn();
+  double StampOf(std::size_t stream, const BagMessage& message, const RosHeader& header) const;
+  /// False when the message is malformed.
+  bool Take(std::size_t stream, const BagMessage& message);
+  bool TakeTransforms(std::size_t stream, const BagMessage& message);
+  LaserScan Convert(RosLaserScan ros_scan, double stamp, const PlanarMount& mount);
+  void Count(const Observation& observation);
+  void CountOther(const BagConnection& connection);
+
+  const LogOptions& options_;
+  const BagPlan& plan_;
+  const RosBag& bag_;
+  BagStreams streams_;
+  StampMender mender_;
+  OdometryAtScans at_scans_;
+  InOrder in_order_;
+  LogStatistics statistics_;
+  bool has_first_stamp_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace masked_mapper

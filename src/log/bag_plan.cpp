@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_plan.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "masked_mapper/log/range_limit.hpp"
+#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kLeastLimit = 1.0;  // m; a range_max below is none
+
+struct MessageType {
+  const char* type;
+  const char* md5sum;  ///< empty: of ROS 2
+  TopicKind kind;
+};
+constexpr MessageType kMessageTypes[] = {
+    {"sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369", TopicKind::kScan},
+    {"sensor_msgs/MultiEchoLaserScan", "6fefb0c6da89d7c8abe4b339f5c2f8fb", TopicKind::kMultiEcho},
+    {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7", TopicKind::kOdometry},
+    {"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
+    {"tf/tfMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
+    {"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2", TopicKind::kImu},
+    {"sensor_msgs/FluidPressure", "804dc5cea1c5306d6a2eb80b9833befe", TopicKind::kPressure},
+    {"sensor_msgs/msg/LaserScan", "", TopicKind::kScan},
+    {"sensor_msgs/msg/MultiEchoLaserScan", "", TopicKind::kMultiEcho},
+    {"nav_msgs/msg/Odometry", "", TopicKind::kOdometry},
+    {"tf2_msgs/msg/TFMessage", "", TopicKind::kTransforms},
+    {"sensor_msgs/msg/Imu", "", TopicKind::kImu},
+    {"sensor_msgs/msg/FluidPressure", "", TopicKind::kPressure},
+};
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+std::vector<std::string> SplitAtCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    std::string part = text.substr(begin, comma - begin);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty()) parts.push_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
+
+/// The topics of a bag by kind, and which of them to read.
+class TopicChoice {
+ public:
+  TopicChoice(const std::string& path, const std::map<std::uint32_t, BagConnection>& connections)
+      : path_(path) {
+    for (const auto& [id, connection] : connections) {
+      all_.insert(connection.topic);
+      const std::optional<TopicKind> kind = KindOf(connection);
+      if (kind) kinds_.emplace(connection.topic, *kind);
+    }
+  }
+
+  BagPlan Choose(const LogOptions& options) const {
+    BagPlan plan;
+    for (const std::string& name : Pick({TopicKind::kScan, TopicKind::kMultiEcho}, "scan",
+                                        "log.scan_topic", options.scan_topic)) {
+      plan.topics.push_back({name, kinds_.at(name), plan.scanners++});
+    }
+    if (plan.scanners == 0) {
+      throw InputError(path_ + ": holds no sensor_msgs/LaserScan (topics: " +
+                       (all_.empty() ? "none" : Listed({all_.begin(), all_.end()})) + ")");
+    }
+    AddOne({TopicKind::kOdometry}, "odometry", "log.odometry_topic", options.odometry_topic, &plan);
+    plan.has_odometry_topic = plan.topics.size() > plan.scanners;
+    AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
+    AddOne({TopicKind::kPressure}, "pressure", "log.pressure_topic", options.pressure_topic, &plan);
+    for (const auto& [name, kind] : kinds_) {
+      if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0});
+    }
+    plan.mounts.resize(plan.scanners);
+    plan.clock_offsets.resize(plan.topics.size());
+    return plan;
+  }
+
+ private:
+  std::vector<std::string> Pick(const std::set<TopicKind>& wanted, const std::string& what,
+                                const std::string& option, const std::string& given) const {
+    std::vector<std::string> candidates;
+    for (const auto& [name, kind] : kinds_) {
+      if (wanted.count(kind) > 0) candidates.push_back(name);
+    }
+    if (given == "none") return {};
+    if (!given.empty()) {
+      std::vector<std::string> picked = SplitAtCommas(given);
+      for (const std::string& name : picked) {
+        if (std::count(picked.begin(), picked.end(), name) > 1) {
+          throw InputError(path_ + ": " + option + ": names `" + name + "` twice");
+        }
+        if (std::find(candidates.begin(), candidates.end(), name) != candidates.end()) continue;
+        throw InputError(path_ + ": " + option + ": no " + what + " topic `" + name + "`" +
+                         DidYouMean(name, candidates) + "; the bag has " +
+                         (candidates.empty() ? "none" : Listed(candidates)));
+      }
+      return picked;
+    }
+    if (candidates.size() > 1) {
+      const bool may_be_merged = wanted.count(TopicKind::kScan) > 0;
+      throw InputError(path_ + ": has several " + what + " topics (" + Listed(candidates) +
+                       "); choose with " + option + "=" + candidates.front() +
+                       (may_be_merged ? ", or several with commas to merge them" : ""));
+    }
+    return candidates;
+  }
+
+  void AddOne(const std::set<TopicKind>& wanted, const std::string& what, const std::string& option,
+              const std::string& given, BagPlan* plan) const {
+    const std::vector<std::string> picked = Pick(wanted, what, option, given);
+    if (picked.size() > 1) throw InputError(path_ + ": " + option + ": takes one topic");
+    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0});
+  }
+
+  std::string path_;
+  std::set<std::string> all_;
+  std::map<std::string, TopicKind> kinds_;
+};
+
+}  // namespace
+
+std::optional<TopicKind> KindOf(const BagConnection& connection) {
+  for (const MessageType& known : kMessageTypes) {
+    if (connection.type == known.type && connection.md5sum == known.md5sum) return known.kind;
+  }
+  return std::nullopt;
+}
+
+BagPlan ChooseTopics(const std::string& path,
+                     const std::map<std::uint32_t, BagConnection>& connections,
+                     const LogOptions& options) {
+  return TopicChoice(path, connections).Choose(options);
+}
+
+std::optional<std::size_t> BagStreams::Find(std::uint32_t connection) {
+  const auto known = streams_.find(connection);
+  if (known != streams_.end()) return known->second;
+  const BagConnection& wanted = bag_.Connections().at(connection);
+  const auto topic =
+      std::find_if(plan_.topics.begin(), plan_.topics.end(),
+                   [&wanted](const BagTopic& read) { return read.name == wanted.topic; });
+  std::optional<std::size_t> stream;
+  if (KindOf(wanted) && topic != plan_.topics.end()) {
+    stream = static_cast<std::size_t>(topic - plan_.topics.begin());
+  }
+  streams_.emplace(connection, stream);
+  return stream;
+}
+
+std::optional<RosLaserScan> ParseScan(TopicKind kind, const BagMessage& message,
+                                      const LogOptions& options) {
+  if (kind == TopicKind::kScan) {
+    return ParseLaserScan(message.data, message.size, message.encoding);
+  }
+  return ParseMultiEchoLaserScan(
+      message.data, message.size,
+      options.strongest_echo ? EchoChoice::kStrongest : EchoChoice::kFirst, message.encoding);
+}
+
+bool IsRangeLimit(double range_max) {
+  return range_max >= kLeastLimit && range_max < RangeLimitFinder::kAbsurdRange;
+}
+
+}  // namespace masked_mapper

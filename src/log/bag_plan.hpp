@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What of a bag is read: which topics as what, where their sensors sit, whose clock stamps them.
+// Topics are chosen by type and options (bag_plan.cpp); the rest is found by a look at the bag
+// (bag_look.hpp).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/log/frame_tree.hpp"
+#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/ros_bag.hpp"
+
+namespace masked_mapper {
+
+enum class TopicKind { kScan, kMultiEcho, kOdometry, kTransforms, kImu, kPressure };
+
+/// Empty: of a type that is not read.
+std::optional<TopicKind> KindOf(const BagConnection& connection);
+
+/// A topic that is read; its place among `BagPlan::topics` is its stream.
+struct BagTopic {
+  std::string name;
+  TopicKind kind = TopicKind::kScan;
+  std::size_t scanner = 0;
+};
+
+struct BagPlan {
+  std::vector<BagTopic> topics;  ///< those of the scanners first, in their order
+  std::size_t scanners = 0;
+  bool has_odometry_topic = false;
+  std::vector<PlanarMount> mounts;  ///< of the scanners
+  std::string odometry_frame;       ///< of tf, when there is no Odometry; empty: none
+  std::string robot_frame;
+  Eigen::Matrix3d R_robot_imu = Eigen::Matrix3d::Identity();
+  std::vector<std::optional<double>> clock_offsets;  ///< s, of topics: header minus recording
+  double clock_offset = 0.0;                         ///< s, of the first scanner
+  double max_range = 0.0;                            ///< m
+  float no_return = 0.0F;                            ///< m; 0: each scan's own range_max
+};
+
+/// Which topics to read, by their types and the user's options. Throws InputError, `path` in front:
+/// no scanner, several topics of which one is to be chosen, a topic that is not there or named
+/// twice.
+BagPlan ChooseTopics(const std::string& path,
+                     const std::map<std::uint32_t, BagConnection>& connections,
+                     const LogOptions& options);
+
+/// The streams of a bag's connections, so that messages need no names compared. Both the plan and
+/// the bag must outlive it.
+class BagStreams {
+ public:
+  BagStreams(const BagPlan& plan, const RosBag& bag) : plan_(plan), bag_(bag) {}
+
+  /// Empty when the connection's messages are not read.
+  std::optional<std::size_t> Find(std::uint32_t connection);
+
+ private:
+  const BagPlan& plan_;
+  const RosBag& bag_;
+  std::map<std::uint32_t, std::optional<std::size_t>> streams_;
+};
+
+/// A scan of either type.
+std::optional<RosLaserScan> ParseScan(TopicKind kind, const BagMessage& message,
+                                      const LogOptions& options);
+
+/// Whether a scan's range_max says anything.
+bool IsRangeLimit(double range_max);
+
+}  // namespace masked_mapper

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record_file.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "masked_mapper/text/input_error.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::uint64_t kLargestHeader = std::uint64_t{1} << 20U;
+
+}  // namespace
+
+RecordFile::RecordFile(const std::string& path) : path_(path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    throw InputError(path + ": is no file that can be read");
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) throw InputError(path + ": " + std::strerror(errno));
+}
+
+bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
+  std::uint64_t header_size = 0;
+  if (!ReadLength(&header_size)) return false;
+  if (header_size > std::min(kLargestHeader, left())) return false;
+  Read(header_size, &header_bytes_);
+  return header->Parse(header_bytes_.data(), header_bytes_.size()) && ReadLength(data_size);
+}
+
+bool RecordFile::ReadLength(std::uint64_t* length) {
+  unsigned char bytes[4];
+  if (left() < 4 || std::fread(bytes, 1, 4, file_.get()) != 4) return false;
+  position_ += 4;
+  *length = LittleEndian(bytes, 4);
+  return true;
+}
+
+void RecordFile::Read(std::uint64_t count, std::vector<unsigned char>* bytes) {
+  bytes->resize(count);
+  if (std::fread(bytes->data(), 1, count, file_.get()) != count) {
+    throw InputError(path_ + ": cannot be read");
+  }
+  position_ += count;
+}
+
+bool RecordFile::Skip(std::uint64_t count) {
+  const bool fits = count <= left();
+  Seek(fits ? position_ + count : size_);
+  return fits;
+}
+
+void RecordFile::Seek(std::uint64_t position) {
+  if (::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
+    throw InputError(path_ + ": cannot be read");
+  }
+  position_ = position;
+}
+
+}  // namespace masked_mapper

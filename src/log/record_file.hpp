@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A ROS 1 bag as a file of records, with a position that never leaves it.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bag_record.hpp"
+
+namespace masked_mapper {
+
+class RecordFile {
+ public:
+  /// Throws InputError, as all below: cannot be opened or read.
+  explicit RecordFile(const std::string& path);
+
+  std::uint64_t size() const { return size_; }
+  std::uint64_t position() const { return position_; }
+  std::uint64_t left() const { return size_ - position_; }
+
+  /// The header of the record at the position, and the length of its data, whose first byte is then
+  /// the position. False when there is none. The header's bytes stay until the next call.
+  bool ReadHeader(RecordHeader* header, std::uint64_t* data_size);
+  /// `count` is at most left().
+  void Read(std::uint64_t count, std::vector<unsigned char>* bytes);
+  /// False when the file ends before; the position is then its end.
+  bool Skip(std::uint64_t count);
+  void Seek(std::uint64_t position);
+
+ private:
+  struct FileCloser {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  bool ReadLength(std::uint64_t* length);
+
+  std::string path_;
+  std::unique_ptr<std::FILE, FileCloser> file_;
+  std::uint64_t size_ = 0;
+  std::uint64_t position_ = 0;
+  std::vector<unsigned char> header_bytes_;
+};
+
+}  // namespace masked_mapper
