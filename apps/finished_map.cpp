@@ -39,7 +39,7 @@ std::string HowToGoOn(const std::string& out, ExportAdvice advice, bool too_larg
 
 }  // namespace
 
-void KeepMap(const MapOrigin& origin, MappingResult& result, const std::string& out,
+void KeepMap(const MapOrigin& origin, BuildingMap& result, const std::string& out,
              ExistingFolder existing) {
   double seconds = 0.0;
   {
@@ -57,7 +57,7 @@ bool IsDrawnSo(const MapOrigin& before, const MapOrigin& now) {
   return DrawingOf(before) == DrawingOf(now);
 }
 
-bool IsComplete(const MappingResult& result, const std::string& out) {
+bool IsComplete(const BuildingMap& result, const std::string& out) {
   const std::vector<std::filesystem::path> files = ExportedFiles(result);
   return std::all_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
     return std::filesystem::exists(out / file);

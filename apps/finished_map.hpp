@@ -12,14 +12,14 @@
 namespace masked_mapper {
 
 /// Puts the map alone into OUT. Throws InputError or std::runtime_error when that cannot be.
-void KeepMap(const MapOrigin& origin, MappingResult& result, const std::string& out,
+void KeepMap(const MapOrigin& origin, BuildingMap& result, const std::string& out,
              ExistingFolder existing);
 
 /// Whether both are drawn and filled with the same options.
 bool IsDrawnSo(const MapOrigin& before, const MapOrigin& now);
 
 /// Whether OUT holds every file that the map is exported as.
-bool IsComplete(const MappingResult& result, const std::string& out);
+bool IsComplete(const BuildingMap& result, const std::string& out);
 
 enum class MapFileNow {
   kAsItIs,  ///< building.mmap in OUT is of this map

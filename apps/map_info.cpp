@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/options/option_table.hpp"
@@ -39,7 +38,7 @@ MapFacts FactsOf(const std::string& out_or_map) {
   facts.file = MapFileOf(out_or_map);
   const SavedMap map = ReadMapFile(facts.file);
   facts.bytes = std::filesystem::file_size(facts.file);
-  const MappingResult& result = map.result;
+  const BuildingMap& result = map.result;
   facts.summary = Summarise(result, DescriptionOf(map.origin, result),
                             RenderFloors(result, map.origin.options.grid));
   const std::vector<TrajectoryPose>& trajectory = result.trajectory;
@@ -55,10 +54,10 @@ MapFacts FactsOf(const std::string& out_or_map) {
   }
   for (const auto state : {ClosureState::kRejectedScore, ClosureState::kHypothesis,
                            ClosureState::kValidated, ClosureState::kAuditedOut}) {
-    facts.states.emplace_back(StateName(state), 0);
+    facts.states.emplace_back(Name(state), 0);
   }
-  for (const ClosureAttempt& attempt : result.attempts) {
-    ++facts.states[static_cast<std::size_t>(attempt.state)].second;
+  for (const Closure& closure : result.closures) {
+    ++facts.states[static_cast<std::size_t>(closure.state)].second;
   }
   facts.changed = ChangedOptions(map.origin.options);
   std::vector<std::string>& warnings = facts.summary.warnings;

@@ -82,17 +82,17 @@ void WarnOfLeftAside(const std::string& name, const SavedMap& map, ProgressBar& 
 }
 
 /// Maps one of the logs, unless it is done already.
-MappingResult MapDrive(const MapArguments& arguments, const MapOrigin& origin, std::size_t drive,
-                       Keeping& keeping, ProgressBar& progress) {
+BuildingMap MapDrive(const MapArguments& arguments, const MapOrigin& origin, std::size_t drive,
+                     Keeping& keeping, ProgressBar& progress) {
   const bool is_alone = keeping.drives == 1 && origin.onto.empty();
   if (!is_alone) {
-    std::optional<MappingResult> done = keeping.finished.Load(drive);
+    std::optional<BuildingMap> done = keeping.finished.Load(drive);
     if (done) return std::move(*done);
   }
   const MapOrigin own = OriginOfDrive(origin, drive);
   keeping.checkpoints = std::make_unique<CheckpointFile>(
       arguments.out, origin, arguments.checkpoint_s, arguments.resume, drive);
-  MappingResult map =
+  BuildingMap map =
       MapLog(own.log, own.mask, own.options.mapping, progress, keeping.checkpoints.get());
   const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
                                 keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
@@ -108,9 +108,9 @@ MappingResult MapDrive(const MapArguments& arguments, const MapOrigin& origin, s
 }
 
 /// Maps every log by itself and joins them, to OLD first of all.
-MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keeping& keeping,
-                      ProgressBar& progress) {
-  std::vector<MappingResult> maps;
+BuildingMap MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keeping& keeping,
+                    ProgressBar& progress) {
+  std::vector<BuildingMap> maps;
   double onto_seconds = 0.0;
   if (!origin.onto.empty()) {
     const StageTimer timer(onto_seconds);
@@ -125,15 +125,15 @@ MappingResult MapLogs(const MapArguments& arguments, const MapOrigin& origin, Ke
   for (std::size_t drive = 0; drive < keeping.drives; ++drive) {
     maps.push_back(MapDrive(arguments, origin, drive, keeping, progress));
   }
-  MappingResult map = JoinDrives(std::move(maps), origin.options.drive_joins,
-                                 origin.options.mapping.closures, progress);
+  BuildingMap map = JoinDrives(std::move(maps), origin.options.drive_joins,
+                               origin.options.mapping.closures, progress);
   map.seconds.read += onto_seconds;
   map.seconds.total += onto_seconds;
   return map;
 }
 
 /// Mends the map; empty, or why it stays as it is.
-std::string EditFault(const MapArguments& arguments, const Options& options, MappingResult& map) {
+std::string EditFault(const MapArguments& arguments, const Options& options, BuildingMap& map) {
   if (arguments.edits.empty()) return "";
   double seconds = 0.0;
   try {
@@ -186,9 +186,9 @@ MapOrigin OriginOf(const MapArguments& arguments, Options options) {
 }
 
 /// Maps and puts the map into OUT, where nothing loses it any more.
-MappingResult MakeMap(const MapArguments& arguments, const MapOrigin& origin,
-                      ExistingFolder existing, Keeping& keeping, ProgressBar& progress) {
-  MappingResult result;
+BuildingMap MakeMap(const MapArguments& arguments, const MapOrigin& origin, ExistingFolder existing,
+                    Keeping& keeping, ProgressBar& progress) {
+  BuildingMap result;
   std::string edit_fault;
   try {
     result = MapLogs(arguments, origin, keeping, progress);

@@ -9,7 +9,7 @@
 namespace masked_mapper {
 
 /// The log is the first one: of a map that was grown, the one that it began with.
-inline RunDescription DescriptionOf(const MapOrigin& origin, const MappingResult& result) {
+inline RunDescription DescriptionOf(const MapOrigin& origin, const BuildingMap& result) {
   const bool is_grown = result.drives.size() > 1;
   return {is_grown ? result.drives.front().log : origin.log, origin.mask,
           OptionValues(origin.options)};

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -26,7 +26,7 @@ class GridDrive {
       const int along = lane % 2 == 0 ? step % kSide : kSide - 1 - step % kSide;
       Node node;
       node.T_world_robot = {5.0 * lane, 5.0 * along, lane % 2 == 0 ? kPi / 2 : -kPi / 2};
-      node.points_in_robot = ScanPoints::ConstPtr(new ScanPoints);
+      node.scan = 0;
       graph_.AddNode(node);
       if (i > 0) graph_.AddEdge({i - 1, i, Measured(i - 1, i, 1.0), EdgeKind::kOdometry});
     }

@@ -38,8 +38,8 @@ LaserScan ScanInCorridor(const Pose2& pose, double corridor_y, int seed) {
   return scan;
 }
 
-MappingResult LargeFloor() {
-  MappingResult map;
+BuildingMap LargeFloor() {
+  BuildingMap map;
   map.graph.AddFloor({"0", 3.7, 0.0, true});
   for (int corridor = 0; corridor < kCorridors; ++corridor) {
     const double y = kSpacing * (corridor + 0.5);
@@ -56,7 +56,7 @@ MappingResult LargeFloor() {
 }
 
 void RenderLargeFloor(benchmark::State& state) {
-  const MappingResult map = LargeFloor();
+  const BuildingMap map = LargeFloor();
   GridOptions options;
   options.threads = static_cast<int>(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(RenderFloors(map, options));
@@ -77,7 +77,7 @@ BENCHMARK(BuildOctreeOfLargeFloor)
     ->Unit(benchmark::kMillisecond);
 
 void WriteLargeFloor(benchmark::State& state) {
-  const MappingResult map = LargeFloor();
+  const BuildingMap map = LargeFloor();
   const auto folder = std::filesystem::temp_directory_path() / "masked_mapper_rendering_benchmark";
   ExportOptions options;
   options.grid.threads = static_cast<int>(state.range(0));

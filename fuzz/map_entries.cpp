@@ -22,7 +22,7 @@ void Configuration(const std::uint8_t* data, std::size_t size) {
 void Edits(const std::uint8_t* data, std::size_t size) {
   static const SavedMap start =
       ReadMapFile(MASKED_MAPPER_SOURCE_DIR "/fuzz/corpus/map_file/drive.mmap");
-  MappingResult map = start.result;
+  BuildingMap map = start.result;
   try {
     ApplyEditsText("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size),
                    start.origin.options.mapping.closures, map);

@@ -110,7 +110,7 @@ class EditLine {
 
 class Editor {
  public:
-  Editor(const LoopClosureOptions& options, MappingResult& map) : options_(options), map_(map) {}
+  Editor(const LoopClosureOptions& options, BuildingMap& map) : options_(options), map_(map) {}
 
   void Apply(EditLine& edit) {
     const std::vector<std::pair<std::string, std::function<std::string(EditLine&)>>> edits = {
@@ -192,9 +192,9 @@ class Editor {
     const double to_stamp = edit.Number("to");
     std::size_t from = ScanAt(from_stamp, edit);
     std::size_t to = ScanAt(to_stamp, edit);
-    ClosureAttempt attempt;
-    attempt.state = ClosureState::kValidated;
-    attempt.reason = kAddedByHand;
+    Closure closure;
+    closure.state = ClosureState::kValidated;
+    closure.reason = ClosureReason::kAddedByHand;
     UncertainPose2 T_from_to;
     if (edit.Has("transform")) {
       const std::vector<double> sigma =
@@ -219,48 +219,37 @@ class Editor {
       from = match.from;
       to = match.to;
       T_from_to = match.T_from_to;
-      attempt.score = match.score;
+      closure.score = match.score;
     }
-    Join(PlaceAt(from), PlaceAt(to), T_from_to, attempt, edit);
+    Join(PlaceAt(from), PlaceAt(to), T_from_to, closure, edit);
     return "a closure between stamps " + Short(from_stamp) + " and " + Short(to_stamp);
   }
 
-  void Join(const Place& from, const Place& to, const UncertainPose2& T_from_to,
-            ClosureAttempt attempt, const EditLine& edit) {
+  void Join(const Place& from, const Place& to, const UncertainPose2& T_from_to, Closure closure,
+            const EditLine& edit) {
     if (NodeOf(from.node).floor != NodeOf(to.node).floor) {
       edit.Fail("the two stamps are on different floors");
     }
     if (from.node == to.node) edit.Fail("the two stamps are at one node of the graph");
     // From node to node, by way of the two scans; the little motion in between is taken as exact.
-    UncertainPose2 T_a_b = UncertainPose2{from.T_node_robot, Eigen::Matrix3d::Zero()} * T_from_to *
-                           UncertainPose2{Inverse(to.T_node_robot), Eigen::Matrix3d::Zero()};
-    NodeId a = from.node;
-    NodeId b = to.node;
-    if (a < b) {  // a is the newer one everywhere
-      std::swap(a, b);
-      T_a_b = Inverse(T_a_b);
+    closure.older = from.node;
+    closure.newer = to.node;
+    closure.T_older_newer = UncertainPose2{from.T_node_robot, Eigen::Matrix3d::Zero()} * T_from_to *
+                            UncertainPose2{Inverse(to.T_node_robot), Eigen::Matrix3d::Zero()};
+    if (closure.older > closure.newer) {
+      std::swap(closure.older, closure.newer);
+      closure.T_older_newer = Inverse(closure.T_older_newer);
     }
-    map_.graph.AddEdge({a, b, T_a_b, EdgeKind::kClosure});
-    NoteJoined(DriveOfNode(map_, a), DriveOfNode(map_, b));
-    attempt.a = a;
-    attempt.b = b;
-    attempt.T_a_b = T_a_b;
-    map_.attempts.push_back(std::move(attempt));
+    NoteJoined(DriveOfNode(map_, closure.newer), DriveOfNode(map_, closure.older));
+    map_.closures.push_back(std::move(closure));
+    AddClosureEdge(map_.closures, static_cast<ClosureId>(map_.closures.size() - 1), map_.graph);
     pulled_ = true;
   }
 
-  /// A drive that was a piece of its own is one no more.
-  void NoteJoined(std::size_t newer, std::size_t older) {
-    if (newer == older) return;
-    Drive& drive = map_.drives[std::max(newer, older)];
-    const std::string stale = drive.log + ": stays a piece of its own";
-    const auto is_stale = [&](const std::string& warning) {
-      return warning.compare(0, stale.size(), stale) == 0;
-    };
-    const auto gone = std::remove_if(map_.warnings.begin(), map_.warnings.end(), is_stale);
-    if (gone == map_.warnings.end()) return;
-    map_.warnings.erase(gone, map_.warnings.end());
-    drive.reason = "joined by hand";
+  /// Before the closure between them: a drive that is a piece of its own is one no more.
+  void NoteJoined(std::size_t one, std::size_t other) {
+    const std::vector<std::size_t> pieces = PiecesOfDrives(map_);
+    if (pieces[one] != pieces[other]) map_.drives[std::max(one, other)].reason = "joined by hand";
   }
 
   struct Match {
@@ -326,26 +315,22 @@ class Editor {
     const auto is_near = [&](NodeId node, double stamp) {
       return std::abs(NodeOf(node).stamp - stamp) <= tolerance_s;
     };
-    std::size_t removed = 0;
-    for (std::size_t i = map_.graph.edges().size(); i-- > 0;) {
-      const Edge edge = map_.graph.edges()[i];
+    std::vector<EdgeId> removed;
+    for (std::size_t i = 0; i < map_.graph.edges().size(); ++i) {
+      const Edge& edge = map_.graph.edges()[i];
       if (edge.kind != EdgeKind::kClosure) continue;
       if (!(is_near(edge.from, from) && is_near(edge.to, to)) &&
           !(is_near(edge.from, to) && is_near(edge.to, from))) {
         continue;
       }
-      map_.graph.RemoveEdge(static_cast<EdgeId>(i));
-      ++removed;
-      for (ClosureAttempt& attempt : map_.attempts) {
-        if (attempt.state != ClosureState::kValidated || attempt.a != edge.from ||
-            attempt.b != edge.to) {
-          continue;
-        }
-        attempt.state = ClosureState::kAuditedOut;
-        attempt.reason = kForbiddenByHand;
-      }
+      removed.push_back(static_cast<EdgeId>(i));
+      if (edge.closure < 0) continue;
+      Closure& closure = map_.closures[static_cast<std::size_t>(edge.closure)];
+      closure.state = ClosureState::kAuditedOut;
+      closure.reason = ClosureReason::kForbiddenByHand;
     }
-    return removed;
+    map_.graph.RemoveEdges(removed);
+    return removed.size();
   }
 
   std::string NameFloor(EditLine& edit) {
@@ -397,43 +382,41 @@ class Editor {
   /// The same graph with other floors: `change` may alter a floor, and says which it becomes;
   /// floors that became another are gone.
   void Rebuild(const std::function<FloorId(FloorId, Floor&)>& change) {
-    const PoseGraph& old = map_.graph;
+    std::vector<Floor> floors;
     std::vector<FloorId> becomes;
-    std::vector<FloorId> new_id(old.floors().size(), -1);
-    PoseGraph graph;
-    for (std::size_t i = 0; i < old.floors().size(); ++i) {
-      Floor floor = old.floors()[i];
+    std::vector<FloorId> new_id(map_.graph.floors().size(), -1);
+    for (std::size_t i = 0; i < new_id.size(); ++i) {
+      Floor floor = map_.graph.floors()[i];
       becomes.push_back(change(static_cast<FloorId>(i), floor));
-      if (becomes.back() == static_cast<FloorId>(i)) new_id[i] = graph.AddFloor(std::move(floor));
+      if (becomes.back() != static_cast<FloorId>(i)) continue;
+      new_id[i] = static_cast<FloorId>(floors.size());
+      floors.push_back(std::move(floor));
     }
     const auto renamed = [&](FloorId id) {
       return new_id[static_cast<std::size_t>(becomes[static_cast<std::size_t>(id)])];
     };
-    for (Node node : old.nodes()) {
-      node.floor = renamed(node.floor);
-      graph.AddNode(std::move(node));
-    }
-    for (const Edge& edge : old.edges()) graph.AddEdge(edge);
+    std::vector<FloorId> floor_of_node;
+    for (const Node& node : map_.graph.nodes()) floor_of_node.push_back(renamed(node.floor));
+    map_.graph.Refloor(std::move(floors), floor_of_node);
     for (TrajectoryPose& pose : map_.trajectory) pose.floor = renamed(pose.floor);
-    map_.graph = std::move(graph);
   }
 
   const LoopClosureOptions& options_;
-  MappingResult& map_;
+  BuildingMap& map_;
   bool pulled_ = false;  ///< edges came or went
 };
 
 }  // namespace
 
 void ApplyEditsText(const std::string& name, const std::string& text,
-                    const LoopClosureOptions& options, MappingResult& map) {
+                    const LoopClosureOptions& options, BuildingMap& map) {
   const YamlTree tree = ParseYaml(name, text);
   if (tree.kind == YamlTree::Kind::kEmpty) return;
   if (tree.kind != YamlTree::Kind::kList) {
     throw InputError(name + ":" + std::to_string(tree.line) +
                      ": expected a list of edits, each a line that starts with `- `");
   }
-  MappingResult changed = map;
+  BuildingMap changed = map;
   Editor editor(options, changed);
   for (const YamlTree& item : tree.list) {
     EditLine line(name, item);
@@ -443,7 +426,7 @@ void ApplyEditsText(const std::string& name, const std::string& text,
   map = std::move(changed);
 }
 
-void ApplyEdits(const std::string& path, const LoopClosureOptions& options, MappingResult& map) {
+void ApplyEdits(const std::string& path, const LoopClosureOptions& options, BuildingMap& map) {
   ApplyEditsText(path, ReadSmallFile(path, "list of edits"), options, map);
 }
 

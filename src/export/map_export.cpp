@@ -32,7 +32,7 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<PosedScan> DrawnScans(const MappingResult& result) {
+std::vector<PosedScan> DrawnScans(const BuildingMap& result) {
   std::vector<PosedScan> scans;
   scans.reserve(result.kept_scans.size());
   for (const KeptScan& kept : result.kept_scans) {
@@ -78,7 +78,7 @@ class Unwritten {
 /// Writes the files of a map one after the other, whatever becomes of each.
 class MapWriter {
  public:
-  MapWriter(const MappingResult& result, const ExportOptions& options,
+  MapWriter(const BuildingMap& result, const ExportOptions& options,
             const std::filesystem::path& folder)
       : result_(result), options_(options), folder_(folder) {}
 
@@ -119,7 +119,7 @@ class MapWriter {
     WriteDrives();
     Write("nodes.tum", [&](const auto& path) { WriteNodes(graph, path); });
     Write("graph.g2o", [&](const auto& path) { WriteG2o(graph, path); });
-    Write("closures.csv", [&](const auto& path) { WriteClosures(result_.attempts, graph, path); });
+    Write("closures.csv", [&](const auto& path) { WriteClosures(result_.closures, graph, path); });
   }
 
   std::string Report() {
@@ -211,7 +211,7 @@ class MapWriter {
     }
   }
 
-  const MappingResult& result_;
+  const BuildingMap& result_;
   const ExportOptions& options_;
   const std::filesystem::path& folder_;
   std::vector<OccupancyGrid> grids_;  // by FloorId; empty where it could not be drawn
@@ -221,7 +221,7 @@ class MapWriter {
 
 }  // namespace
 
-std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
+std::vector<FloorGrid> RenderGrids(const BuildingMap& result, const GridOptions& options,
                                    const std::optional<FloorId>& floor) {
   const std::vector<PosedScan> scans = DrawnScans(result);
   std::vector<FloorGrid> grids;
@@ -232,13 +232,13 @@ std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOption
   return grids;
 }
 
-std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options) {
+std::vector<OccupancyGrid> RenderFloors(const BuildingMap& result, const GridOptions& options) {
   std::vector<OccupancyGrid> grids;
   for (FloorGrid& grid : RenderGrids(result, options, {})) grids.push_back(std::move(grid.grid));
   return grids;
 }
 
-std::vector<std::filesystem::path> ExportedFiles(const MappingResult& result) {
+std::vector<std::filesystem::path> ExportedFiles(const BuildingMap& result) {
   std::vector<std::filesystem::path> files = {"building.bt",  "building.pcd",   "building.ply",
                                               "graph.g2o",    "trajectory.tum", "nodes.tum",
                                               "closures.csv", "summary.json",   "report.html"};
@@ -253,8 +253,8 @@ std::vector<std::filesystem::path> ExportedFiles(const MappingResult& result) {
   return files;
 }
 
-Summary WriteMap(const MappingResult& result, const RunDescription& run,
-                 const ExportOptions& options, const std::filesystem::path& folder) {
+Summary WriteMap(const BuildingMap& result, const RunDescription& run, const ExportOptions& options,
+                 const std::filesystem::path& folder) {
   CheckFloorLabels(result.graph.floors());
   MapWriter writer(result, options, folder);
   const auto rendering_start = Clock::now();

@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include "export/viewer_page.hpp"
-#include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/export/point_cloud_file.hpp"
 #include "masked_mapper/geometry/angle.hpp"
@@ -180,7 +179,7 @@ struct PoseColumns {
 };
 
 // The motion path may start anywhere; as drawn it starts where the map does.
-Pose2 WorldFromOdometry(const MappingResult& result) {
+Pose2 WorldFromOdometry(const BuildingMap& result) {
   if (!result.graph.nodes().empty()) {
     const Node& first = result.graph.nodes().front();
     return first.T_world_robot * Inverse(first.T_odom_robot);
@@ -191,7 +190,7 @@ Pose2 WorldFromOdometry(const MappingResult& result) {
 }
 
 // A few of the points that the kept scans hit, so that the map before optimisation can be drawn.
-Json ScansJson(const MappingResult& result, const Pose2& T_world_odom, double max_range_m) {
+Json ScansJson(const BuildingMap& result, const Pose2& T_world_odom, double max_range_m) {
   std::size_t hits = 0;
   for (const KeptScan& kept : result.kept_scans) hits += kept.scan.size();
   const std::size_t stride = std::max<std::size_t>(1, (hits + kMaxScanPoints - 1) / kMaxScanPoints);
@@ -233,14 +232,14 @@ Json ScansJson(const MappingResult& result, const Pose2& T_world_odom, double ma
 }
 
 // Whether a scan is the first of a drive after the first.
-bool BeginsDrive(const MappingResult& result, std::size_t pose) {
+bool BeginsDrive(const BuildingMap& result, std::size_t pose) {
   return std::any_of(result.drives.begin(), result.drives.end(),
                      [&](const Drive& drive) { return pose > 0 && drive.first_pose == pose; });
 }
 
 // The poses to draw: where floors change or drives begin and end, and otherwise after `step` metres
 // or some turning.
-std::vector<std::size_t> DrawnPoses(const MappingResult& result, double step) {
+std::vector<std::size_t> DrawnPoses(const BuildingMap& result, double step) {
   const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   std::vector<std::size_t> drawn;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -259,7 +258,7 @@ std::vector<std::size_t> DrawnPoses(const MappingResult& result, double step) {
   return drawn;
 }
 
-Json TrajectoryJson(const MappingResult& result, const Pose2& T_world_odom) {
+Json TrajectoryJson(const BuildingMap& result, const Pose2& T_world_odom) {
   const std::vector<TrajectoryPose>& trajectory = result.trajectory;
   double step = 0.1;
   std::vector<std::size_t> drawn = DrawnPoses(result, step);
@@ -347,46 +346,47 @@ Json EdgesJson(const std::vector<Edge>& edges) {
           {"kind_u8", Base64(kinds)}};
 }
 
-Json AttemptsJson(const std::vector<ClosureAttempt>& attempts, const std::vector<Node>& nodes) {
-  std::vector<std::int32_t> a;
-  std::vector<std::int32_t> b;
+Json ClosuresJson(const std::vector<Closure>& closures, const PoseGraph& graph) {
+  std::vector<std::int32_t> newer;
+  std::vector<std::int32_t> older;
   std::vector<std::int32_t> votes;
   std::vector<std::uint8_t> states;
   std::vector<std::uint32_t> reasons;
-  std::map<std::string, std::uint32_t> number_of_reason;
+  std::map<ClosureReason, std::uint32_t> number_of_reason;
   Json reason_names = Json::array();
   // The match, and how far from it the finished map puts the two nodes.
   std::vector<float> match;
   std::vector<float> quality;
-  for (const ClosureAttempt& attempt : attempts) {
-    a.push_back(attempt.a);
-    b.push_back(attempt.b);
-    votes.push_back(attempt.votes);
-    states.push_back(static_cast<std::uint8_t>(attempt.state));
+  for (const Closure& closure : closures) {
+    newer.push_back(closure.newer);
+    older.push_back(closure.older);
+    votes.push_back(closure.votes);
+    states.push_back(static_cast<std::uint8_t>(closure.state));
     const auto [reason, is_new] = number_of_reason.emplace(
-        attempt.reason, static_cast<std::uint32_t>(number_of_reason.size()));
-    if (is_new) reason_names.push_back(attempt.reason);
+        closure.reason, static_cast<std::uint32_t>(number_of_reason.size()));
+    if (is_new) reason_names.push_back(Name(closure.reason));
     reasons.push_back(reason->second);
-    const Pose2& T_a_b = attempt.T_a_b.mean;
-    match.insert(match.end(), {static_cast<float>(T_a_b.x), static_cast<float>(T_a_b.y),
-                               static_cast<float>(T_a_b.theta)});
-    const Pose2 T_a_b_of_map = Between(nodes.at(static_cast<std::size_t>(attempt.a)).T_world_robot,
-                                       nodes.at(static_cast<std::size_t>(attempt.b)).T_world_robot);
-    const Pose2 left = Between(T_a_b, T_a_b_of_map);
+    const Pose2 T_newer_older = Inverse(closure.T_older_newer.mean);
+    match.insert(match.end(),
+                 {static_cast<float>(T_newer_older.x), static_cast<float>(T_newer_older.y),
+                  static_cast<float>(T_newer_older.theta)});
+    const Pose2 T_of_map =
+        Between(graph.node(closure.newer).T_world_robot, graph.node(closure.older).T_world_robot);
+    const Pose2 left = Between(T_newer_older, T_of_map);
     quality.insert(quality.end(),
-                   {static_cast<float>(attempt.score), static_cast<float>(attempt.mahalanobis),
-                    static_cast<float>(attempt.agreement),
+                   {static_cast<float>(closure.score), static_cast<float>(closure.mahalanobis),
+                    static_cast<float>(closure.agreement),
                     std::hypot(static_cast<float>(left.x), static_cast<float>(left.y)),
                     static_cast<float>(std::abs(left.theta))});
   }
   Json state_names = Json::array();
   for (const ClosureState state : {ClosureState::kRejectedScore, ClosureState::kHypothesis,
                                    ClosureState::kValidated, ClosureState::kAuditedOut}) {
-    state_names.push_back(StateName(state));
+    state_names.push_back(Name(state));
   }
-  return {{"count", attempts.size()},   {"states", state_names},
-          {"reasons", reason_names},    {"a_i32", Base64(a)},
-          {"b_i32", Base64(b)},         {"votes_i32", Base64(votes)},
+  return {{"count", closures.size()},   {"states", state_names},
+          {"reasons", reason_names},    {"a_i32", Base64(newer)},
+          {"b_i32", Base64(older)},     {"votes_i32", Base64(votes)},
           {"state_u8", Base64(states)}, {"reason_u32", Base64(reasons)},
           {"match_f32", Base64(match)}, {"quality_f32", Base64(quality)}};
 }
@@ -407,7 +407,7 @@ std::string SafeInScript(const std::string& json) {
 
 }  // namespace
 
-std::string ReportData(const MappingResult& result, const std::vector<OccupancyGrid>& grids,
+std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGrid>& grids,
                        double max_range_m) {
   assert(grids.size() == result.graph.floors().size());
   const Pose2 T_world_odom = WorldFromOdometry(result);
@@ -418,7 +418,7 @@ std::string ReportData(const MappingResult& result, const std::vector<OccupancyG
                      {"trajectory", TrajectoryJson(result, T_world_odom)},
                      {"nodes", NodesJson(nodes, T_world_odom)},
                      {"edges", EdgesJson(result.graph.edges())},
-                     {"attempts", AttemptsJson(result.attempts, nodes)}};
+                     {"attempts", ClosuresJson(result.closures, result.graph)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

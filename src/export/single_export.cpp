@@ -26,7 +26,7 @@ bool HasHeights(ExportFormat format) {
          format == ExportFormat::kPly;
 }
 
-void WriteClouds(const MappingResult& result, const std::vector<FloorGrid>& grids,
+void WriteClouds(const BuildingMap& result, const std::vector<FloorGrid>& grids,
                  const SingleExport& wanted, const std::filesystem::path& path) {
   const std::vector<Floor>& floors = result.graph.floors();
   const std::vector<Colour> colours = FloorColours(floors);
@@ -40,7 +40,7 @@ void WriteClouds(const MappingResult& result, const std::vector<FloorGrid>& grid
   (wanted.format == ExportFormat::kPcd ? WritePcd : WritePly)(building, path);
 }
 
-void WriteTree(const MappingResult& result, const std::vector<FloorGrid>& grids,
+void WriteTree(const BuildingMap& result, const std::vector<FloorGrid>& grids,
                const OctreeOptions& options, const HeightBand& heights,
                const std::filesystem::path& path) {
   std::vector<FloorLayer> layers;
@@ -51,7 +51,7 @@ void WriteTree(const MappingResult& result, const std::vector<FloorGrid>& grids,
   WriteOctomap(*BuildOctree(layers, options, heights), path);
 }
 
-void WritePoses(const MappingResult& result, const std::optional<FloorId>& floor,
+void WritePoses(const BuildingMap& result, const std::optional<FloorId>& floor,
                 const std::filesystem::path& path) {
   std::vector<TrajectoryPose> poses;
   for (const TrajectoryPose& pose : result.trajectory) {
@@ -90,7 +90,7 @@ void CheckSingleExport(const SingleExport& wanted, const std::vector<Floor>& flo
   }
 }
 
-std::vector<std::filesystem::path> WriteSingleExport(const MappingResult& result,
+std::vector<std::filesystem::path> WriteSingleExport(const BuildingMap& result,
                                                      const ExportOptions& options,
                                                      const SingleExport& wanted,
                                                      const std::filesystem::path& path) {

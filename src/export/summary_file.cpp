@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
 
@@ -29,11 +28,10 @@ double Rounded(double value, double per_unit) {
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> RejectionsOf(
-    const std::vector<ClosureAttempt>& attempts) {
+    const std::vector<Closure>& closures) {
   std::map<std::string, std::uint64_t> by_reason;
-  for (const ClosureAttempt& attempt : attempts) {
-    if (attempt.state == ClosureState::kValidated) continue;
-    ++by_reason[attempt.reason.empty() ? StateName(attempt.state) : attempt.reason];
+  for (const Closure& closure : closures) {
+    if (closure.state != ClosureState::kValidated) ++by_reason[Name(closure.reason)];
   }
   std::vector<std::pair<std::string, std::uint64_t>> sorted(by_reason.begin(), by_reason.end());
   std::stable_sort(sorted.begin(), sorted.end(),
@@ -41,11 +39,11 @@ std::vector<std::pair<std::string, std::uint64_t>> RejectionsOf(
   return sorted;
 }
 
-Summary::Counts CountsOf(const MappingResult& result) {
-  const auto attempts_with = [&result](const auto& condition) {
+Summary::Counts CountsOf(const BuildingMap& result) {
+  const auto closures_with = [&result](const auto& condition) {
     return static_cast<std::uint64_t>(
-        std::count_if(result.attempts.begin(), result.attempts.end(),
-                      [&](const ClosureAttempt& attempt) { return condition(attempt.state); }));
+        std::count_if(result.closures.begin(), result.closures.end(),
+                      [&](const Closure& closure) { return condition(closure.state); }));
   };
   const LogStatistics& log = result.log;
   Summary::Counts counts;
@@ -57,11 +55,11 @@ Summary::Counts CountsOf(const MappingResult& result) {
       std::count_if(result.graph.nodes().begin(), result.graph.nodes().end(),
                     [](const Node& node) { return node.HasScan(); }));
   counts.odometry_nodes = counts.nodes - counts.scan_nodes;
-  counts.attempted = result.attempts.size();
+  counts.attempted = result.closures.size();
   counts.matched =
-      attempts_with([](ClosureState state) { return state != ClosureState::kRejectedScore; });
+      closures_with([](ClosureState state) { return state != ClosureState::kRejectedScore; });
   counts.validated =
-      attempts_with([](ClosureState state) { return state == ClosureState::kValidated; });
+      closures_with([](ClosureState state) { return state == ClosureState::kValidated; });
   return counts;
 }
 
@@ -156,7 +154,7 @@ Json SettingsJson(const std::vector<Setting>& settings) {
 
 }  // namespace
 
-Summary Summarise(const MappingResult& result, const RunDescription& run,
+Summary Summarise(const BuildingMap& result, const RunDescription& run,
                   const std::vector<OccupancyGrid>& grids) {
   Summary summary;
   summary.run = run;
@@ -169,11 +167,11 @@ Summary Summarise(const MappingResult& result, const RunDescription& run,
     summary.floors.push_back({floors[i].label, floors[i].elevation, floors[i].elevation_measured,
                               nodes, KnownArea(grids.at(i))});
   }
-  summary.rejections = RejectionsOf(result.attempts);
+  summary.rejections = RejectionsOf(result.closures);
   summary.motion_source = MotionName(result.motion_source);
   summary.seconds = WithTotal(result.seconds);
   summary.peak_memory_mib = PeakMemoryMib();
-  summary.warnings = result.warnings;
+  summary.warnings = WarningsOf(result);
   if (result.drives.size() > 1) summary.drives = FactsOfDrives(result);
   return summary;
 }

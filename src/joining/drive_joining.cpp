@@ -18,7 +18,7 @@
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
-#include "masked_mapper/map/stretch.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
@@ -28,7 +28,7 @@ namespace masked_mapper {
 namespace {
 
 constexpr double kGapBetweenPieces = 5.0;  // m
-constexpr const char* kStaysApart = ": stays a piece of its own, beside the others: ";
+constexpr double kScanEvery = 0.5;         // m of travel between scans around a node
 
 void AddStatistics(const LogStatistics& more, LogStatistics& log) {
   log.lines += more.lines;
@@ -51,33 +51,9 @@ void AddStatistics(const LogStatistics& more, LogStatistics& log) {
   log.last_stamp = std::max(log.last_stamp, more.last_stamp);
 }
 
-void AddSeconds(const StageSeconds& more, StageSeconds& seconds) {
-  for (double StageSeconds::*part :
-       {&StageSeconds::read, &StageSeconds::motion, &StageSeconds::mask, &StageSeconds::projection,
-        &StageSeconds::matching, &StageSeconds::validation, &StageSeconds::optimisation,
-        &StageSeconds::rendering, &StageSeconds::export_, &StageSeconds::total}) {
-    seconds.*part += more.*part;
-  }
-}
-
-/// The same nodes, each changed as `change` says of it and its place, and edges, on these floors.
-template <class Change>
-void RebuildGraph(const std::vector<Floor>& floors, const Change& change, MappingResult& map) {
-  PoseGraph graph;
-  for (const Floor& floor : floors) graph.AddFloor(floor);
-  for (std::size_t i = 0; i < map.graph.nodes().size(); ++i) {
-    Node node = map.graph.nodes()[i];
-    change(i, node);
-    graph.AddNode(std::move(node));
-  }
-  for (const Edge& edge : map.graph.edges()) graph.AddEdge(edge);
-  map.graph = std::move(graph);
-}
-
-void ShiftStamps(double seconds, MappingResult& map) {
+void ShiftStamps(double seconds, BuildingMap& map) {
   if (seconds == 0.0) return;
-  const auto shift = [&](std::size_t, Node& node) { node.stamp += seconds; };
-  RebuildGraph(map.graph.floors(), shift, map);
+  map.graph.ShiftStamps(seconds);
   for (TrajectoryPose& pose : map.trajectory) pose.stamp += seconds;
   for (KeptScan& kept : map.kept_scans) kept.scan.stamp += seconds;
   for (Drive& drive : map.drives) drive.stamp_offset_s += seconds;
@@ -85,47 +61,38 @@ void ShiftStamps(double seconds, MappingResult& map) {
   map.log.last_stamp += seconds;
 }
 
-/// The same graph with other floors and poses: `becomes` is the new place of each floor, floors
-/// that share one take the first one's values.
-void Refloor(const std::vector<FloorId>& becomes, const std::vector<Floor>& floors,
-             MappingResult& map) {
-  const auto refloor = [&](std::size_t, Node& node) {
-    node.floor = becomes[static_cast<std::size_t>(node.floor)];
-  };
-  RebuildGraph(floors, refloor, map);
-  for (TrajectoryPose& pose : map.trajectory) {
-    pose.floor = becomes[static_cast<std::size_t>(pose.floor)];
-  }
-}
-
 class DriveJoiner {
  public:
-  DriveJoiner(MappingResult first, const DriveJoinOptions& options,
+  DriveJoiner(BuildingMap first, const DriveJoinOptions& options,
               const LoopClosureOptions& closures)
       : joins_(options), closures_(closures) {
     map_ = std::move(first);
   }
 
-  void Append(MappingResult more) {
+  void Append(BuildingMap more) {
     const double offset = StampOffset(more);
     ShiftStamps(offset, more);
     const auto floors = static_cast<FloorId>(map_.graph.floors().size());
     const auto nodes = static_cast<NodeId>(map_.graph.nodes().size());
     const std::size_t poses = map_.trajectory.size();
     for (const Floor& floor : more.graph.floors()) map_.graph.AddFloor(floor);
+    const auto scans = static_cast<KeptScanId>(map_.kept_scans.size());
     for (Node node : more.graph.nodes()) {
       node.floor += floors;
+      if (node.HasScan()) node.scan += scans;
       map_.graph.AddNode(std::move(node));
     }
+    const auto closures = static_cast<ClosureId>(map_.closures.size());
     for (Edge edge : more.graph.edges()) {
       edge.from += nodes;
       edge.to += nodes;
+      if (edge.closure >= 0) edge.closure += closures;
       map_.graph.AddEdge(std::move(edge));
     }
-    for (ClosureAttempt& attempt : more.attempts) {
-      attempt.a += nodes;
-      attempt.b += nodes;
-      map_.attempts.push_back(std::move(attempt));
+    for (Closure& closure : more.closures) {
+      closure.older += nodes;
+      closure.newer += nodes;
+      map_.closures.push_back(std::move(closure));
     }
     for (TrajectoryPose pose : more.trajectory) {
       pose.floor += floors;
@@ -142,7 +109,7 @@ class DriveJoiner {
       map_.drives.push_back(std::move(drive));
     }
     AddStatistics(more.log, map_.log);
-    AddSeconds(more.seconds, map_.seconds);
+    map_.seconds += more.seconds;
     map_.warnings.insert(map_.warnings.end(), more.warnings.begin(), more.warnings.end());
     if (offset != 0.0) {
       char text[200];
@@ -155,21 +122,16 @@ class DriveJoiner {
   /// Each piece is held against those before it, and those that it joins against the rest again.
   void Join(ProgressSink& progress) {
     closures_.validator.places_needed = joins_.places_needed;
-    closures_.refine = true;
-    for (const Drive& drive : map_.drives) {
-      if (drive.motion_source == MotionSource::kOdometry) {
-        closures_.refine = false;
-      }
-    }
-    ForgetPieces();
     PartFloors();
     std::size_t newer = 1;
+    double done = 0.0;
     while (newer < CountPieces()) {
       bool joined = false;
       for (std::size_t older = 0; older < newer && !joined; ++older) {
-        // Also lets an interrupt through.
+        // Also lets an interrupt through. Pieces that joined are tried again, which is no way back.
         const auto pieces = static_cast<double>(CountPieces());
-        progress.Progress(static_cast<double>(newer - 1) / pieces, 0);
+        done = std::max(done, static_cast<double>(newer - 1) / pieces);
+        progress.Progress(done, 0);
         joined = TryJoin(older, newer);
       }
       newer = joined ? 1 : newer + 1;
@@ -182,14 +144,14 @@ class DriveJoiner {
   /// What people should know of the joining.
   const std::vector<std::string>& said() const { return said_; }
 
-  MappingResult Take() {
+  BuildingMap Take() {
     map_.warnings.insert(map_.warnings.end(), said_.begin(), said_.end());
     return std::move(map_);
   }
 
  private:
   // Whole seconds that keep stamps from stepping back.
-  double StampOffset(const MappingResult& more) const {
+  double StampOffset(const BuildingMap& more) const {
     if (more.trajectory.empty() || map_.trajectory.empty()) return 0.0;
     const double last = map_.trajectory.back().stamp;
     const double first = more.trajectory.front().stamp;
@@ -209,18 +171,6 @@ class DriveJoiner {
       if (pieces[i] == piece) drives.push_back(i);
     }
     return drives;
-  }
-
-  // What a map that is grown says of its pieces is said anew.
-  void ForgetPieces() {
-    std::vector<std::string>& warnings = map_.warnings;
-    const auto is_stale = [&](const std::string& warning) {
-      return std::any_of(map_.drives.begin(), map_.drives.end(), [&](const Drive& drive) {
-        return warning.compare(0, drive.log.size() + std::strlen(kStaysApart),
-                               drive.log + kStaysApart) == 0;
-      });
-    };
-    warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_stale), warnings.end());
   }
 
   // Every piece on floors of its own, called as its logs call them. In a map that was mended by
@@ -254,8 +204,7 @@ class DriveJoiner {
         }
       }
     }
-    const auto part = [&](std::size_t i, Node& node) { node.floor = floor_of_node[i]; };
-    RebuildGraph(floors, part, map_);
+    map_.graph.Refloor(std::move(floors), floor_of_node);
   }
 
   static std::string SuffixOf(std::size_t piece, const std::vector<std::size_t>& drives) {
@@ -266,7 +215,7 @@ class DriveJoiner {
   struct Before {
     PoseGraph graph;
     std::vector<TrajectoryPose> trajectory;
-    std::vector<ClosureAttempt> attempts;
+    std::vector<Closure> closures;
   };
 
   bool TryJoin(std::size_t older_piece, std::size_t newer_piece) {
@@ -288,10 +237,12 @@ class DriveJoiner {
       if (older_piece == 0) reason = found.reason;
       return false;
     }
-    Before before{map_.graph, map_.trajectory, map_.attempts};
+    Before before{map_.graph, map_.trajectory, map_.closures};
     Lay(*found.placement, older, newer);
-    const std::size_t offered_from = map_.attempts.size();
-    LoopCloser closer(closures_, map_, [this](NodeId node) { return SurroundingsOf(node); });
+    const std::size_t offered_from = map_.closures.size();
+    LoopClosureOptions options = closures_;
+    options.refine = AreLaidOutByScans(older) && AreLaidOutByScans(newer);
+    LoopCloser closer(options, map_, [this](NodeId node) { return SurroundingsOf(node); });
     std::size_t closures = 0;
     for (const std::size_t drive : newer) {
       const IndexRange nodes = NodesOfDrive(map_, drive);
@@ -302,24 +253,20 @@ class DriveJoiner {
       }
     }
     // Late closures are held against the map, which says nothing where none tied the two.
-    if (closures > 0) {
-      closer.Finish();
-    } else {
-      closer.NoteVotes();
-    }
+    if (closures > 0) closer.Finish();
     const std::vector<std::size_t> pieces = PiecesOfDrives(map_);
     const bool joined = pieces[older.front()] == pieces[newer.front()];
     if (!joined) {
-      const auto first_new = map_.attempts.begin() + static_cast<std::ptrdiff_t>(offered_from);
-      for (auto attempt = first_new; attempt != map_.attempts.end(); ++attempt) {
-        if (attempt->state != ClosureState::kValidated) continue;
-        attempt->state = ClosureState::kAuditedOut;
-        attempt->reason = "too few others tie the drives";
+      const auto first_new = map_.closures.begin() + static_cast<std::ptrdiff_t>(offered_from);
+      for (auto closure = first_new; closure != map_.closures.end(); ++closure) {
+        if (closure->state != ClosureState::kValidated) continue;
+        closure->state = ClosureState::kAuditedOut;
+        closure->reason = ClosureReason::kTooFewTies;
       }
-      before.attempts.insert(before.attempts.end(), first_new, map_.attempts.end());
+      before.closures.insert(before.closures.end(), first_new, map_.closures.end());
       map_.graph = std::move(before.graph);
       map_.trajectory = std::move(before.trajectory);
-      map_.attempts = std::move(before.attempts);
+      map_.closures = std::move(before.closures);
       map_.drives[newer.front()].reason =
           found.reason + ", but too few matches agree for a closure to be sure";
       return false;
@@ -329,34 +276,33 @@ class DriveJoiner {
     return true;
   }
 
+  bool AreLaidOutByScans(const std::vector<std::size_t>& drives) const {
+    return std::all_of(drives.begin(), drives.end(), [&](std::size_t drive) {
+      return map_.drives[drive].motion_source != MotionSource::kOdometry;
+    });
+  }
+
   // Whether somebody took closures between these drives away, and so the drives apart.
   bool AreForbidden(const std::vector<std::size_t>& older,
                     const std::vector<std::size_t>& newer) const {
     const auto is_of = [&](const std::vector<std::size_t>& drives, NodeId node) {
       return std::count(drives.begin(), drives.end(), DriveOfNode(map_, node)) > 0;
     };
-    return std::any_of(map_.attempts.begin(), map_.attempts.end(),
-                       [&](const ClosureAttempt& attempt) {
-                         return attempt.reason == kForbiddenByHand &&
-                                ((is_of(older, attempt.a) && is_of(newer, attempt.b)) ||
-                                 (is_of(older, attempt.b) && is_of(newer, attempt.a)));
-                       });
+    return std::any_of(map_.closures.begin(), map_.closures.end(), [&](const Closure& closure) {
+      return closure.reason == ClosureReason::kForbiddenByHand &&
+             ((is_of(older, closure.newer) && is_of(newer, closure.older)) ||
+              (is_of(older, closure.older) && is_of(newer, closure.newer)));
+    });
   }
 
-  // What an older node is matched against: drives go opposite ways, and a scanner looks ahead.
+  // What an older node is matched against: drives go opposite ways, and a scanner looks ahead. By
+  // the motion path, which stays the same while poses move: the matcher keeps what it made of it.
   ScanPoints::ConstPtr SurroundingsOf(NodeId node) const {
-    const double max_range_m = closures_.matcher.table.max_range_m;
-    const ScanPoints::Ptr all =
-        StretchAround(map_, node, closures_.submaps.half_length_m, max_range_m);
-    ScanPoints::Ptr thinned(new ScanPoints);
-    for (const Eigen::Vector2d& point :
-         ThinPoints(*all, closures_.matcher.table.resolution_m, max_range_m)) {
-      pcl::PointXY plain;
-      plain.x = static_cast<float>(point.x());
-      plain.y = static_cast<float>(point.y());
-      thinned->push_back(plain);
-    }
-    return thinned;
+    const LookupTableOptions& table = closures_.matcher.table;
+    const SurroundingsOptions surroundings{closures_.submaps.half_length_m, kScanEvery,
+                                           LaidOutBy::kMotion};
+    return AsScanPoints(ThinPoints(*PointsAround(map_, node, surroundings, table.max_range_m),
+                                   table.resolution_m, table.max_range_m));
   }
 
   // Moves the newer piece into the older one's frame, and its floors that were met again onto the
@@ -392,7 +338,7 @@ class DriveJoiner {
         known.label_given = true;
       }
     }
-    Refloor(becomes, floors, map_);
+    Refloor(becomes, std::move(floors));
   }
 
   // Floors that were seen too little to be met again are one by the labels that were given to both.
@@ -428,22 +374,25 @@ class DriveJoiner {
     return floors;
   }
 
+  // `becomes` is the new place of each floor.
+  void Refloor(const std::vector<FloorId>& becomes, std::vector<Floor> floors) {
+    std::vector<FloorId> floor_of_node;
+    for (const Node& node : map_.graph.nodes()) {
+      floor_of_node.push_back(becomes[static_cast<std::size_t>(node.floor)]);
+    }
+    map_.graph.Refloor(std::move(floors), floor_of_node);
+    for (TrajectoryPose& pose : map_.trajectory) {
+      pose.floor = becomes[static_cast<std::size_t>(pose.floor)];
+    }
+  }
+
   // The motion path moves along: a drive's lies in the frame of the map before optimisation.
   void Move(const std::vector<std::size_t>& drives, const Pose2& T_to_from) {
-    PoseGraph graph;
-    for (const Floor& floor : map_.graph.floors()) graph.AddFloor(floor);
-    for (std::size_t i = 0; i < map_.graph.nodes().size(); ++i) {
-      Node node = map_.graph.nodes()[i];
-      const std::size_t drive = DriveOfNode(map_, static_cast<NodeId>(i));
-      if (std::count(drives.begin(), drives.end(), drive) > 0) {
-        node.T_world_robot = T_to_from * node.T_world_robot;
-        node.T_odom_robot = T_to_from * node.T_odom_robot;
-      }
-      graph.AddNode(std::move(node));
-    }
-    for (const Edge& edge : map_.graph.edges()) graph.AddEdge(edge);
-    map_.graph = std::move(graph);
     for (const std::size_t drive : drives) {
+      const IndexRange nodes = NodesOfDrive(map_, drive);
+      for (std::size_t i = nodes.begin; i < nodes.end; ++i) {
+        map_.graph.MoveNode(static_cast<NodeId>(i), T_to_from);
+      }
       const IndexRange poses = PosesOfDrive(map_, drive);
       for (std::size_t i = poses.begin; i < poses.end; ++i) {
         TrajectoryPose& pose = map_.trajectory[i];
@@ -516,7 +465,7 @@ class DriveJoiner {
         while (!taken.insert(label).second) label += '_';
       }
     }
-    Refloor(same, floors, map_);
+    Refloor(same, std::move(floors));
   }
 
   static std::string WithoutSuffix(const std::string& label, const std::string& suffix) {
@@ -568,22 +517,20 @@ class DriveJoiner {
       T_beside_piece.y = std::ceil(all.bottom - box.bottom);
       Move(drives, T_beside_piece);
       all.right = box.right + T_beside_piece.x;
-      const Drive& drive = map_.drives[drives.front()];
-      said_.push_back(drive.log + kStaysApart + drive.reason);
     }
   }
 
   DriveJoinOptions joins_;
   LoopClosureOptions closures_;
-  MappingResult map_;
+  BuildingMap map_;
   std::vector<std::string> said_;
   std::set<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>> tried_;
 };
 
 }  // namespace
 
-MappingResult JoinDrives(std::vector<MappingResult> maps, const DriveJoinOptions& options,
-                         const LoopClosureOptions& closures, ProgressSink& progress) {
+BuildingMap JoinDrives(std::vector<BuildingMap> maps, const DriveJoinOptions& options,
+                       const LoopClosureOptions& closures, ProgressSink& progress) {
   if (maps.size() == 1) return std::move(maps.front());
   double seconds = 0.0;
   std::optional<StageTimer> timer(std::in_place, seconds);
@@ -592,7 +539,9 @@ MappingResult JoinDrives(std::vector<MappingResult> maps, const DriveJoinOptions
   for (std::size_t i = 1; i < maps.size(); ++i) joiner.Append(std::move(maps[i]));
   joiner.Join(progress);
   for (const std::string& warning : joiner.said()) progress.Warn(warning);
-  MappingResult joined = joiner.Take();
+  BuildingMap joined = joiner.Take();
+  const std::vector<std::string> warnings = WarningsOf(joined);
+  for (std::size_t i = joined.warnings.size(); i < warnings.size(); ++i) progress.Warn(warnings[i]);
   timer.reset();
   joined.seconds.total += seconds;
   return joined;

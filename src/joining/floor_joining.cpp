@@ -29,7 +29,7 @@ bool Agree(const Shift& a, const Shift& b, const FloorJoinOptions& options) {
 
 class LevelMatcher {
  public:
-  LevelMatcher(const MappingResult& map, const FloorJoinOptions& options,
+  LevelMatcher(const BuildingMap& map, const FloorJoinOptions& options,
                const LoopClosureOptions& closures)
       : map_(map),
         options_(options),
@@ -95,27 +95,26 @@ class LevelMatcher {
   }
 
   std::optional<Shift> MatchPairOf(NodeId node, NodeId neighbour) {
+    const ScanPoints::ConstPtr points_in_node = submaps_.PointsAt(node);
     UncertainPose2 guess;
     guess.mean = Between(At(neighbour).T_world_robot, At(node).T_world_robot);
     const double sigma_m = options_.sigma_m;
     const double sigma_rad = DegToRad(options_.sigma_deg);
     guess.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
     const MatchResult match =
-        matcher_
-            .Match({{neighbour, At(neighbour).points_in_robot, At(node).points_in_robot, guess}})
-            .front();
+        matcher_.Match({{neighbour, submaps_.PointsAt(neighbour), points_in_node, guess}}).front();
     if (match.outcome != MatchOutcome::kMatched) return std::nullopt;
     Pose2 T_neighbour_node = match.T_reference_query.mean;
     if (refine_) {
       const std::optional<SubmapMatch> refined =
-          submaps_.Refine(neighbour, *At(node).points_in_robot, match.T_reference_query);
+          submaps_.Refine(neighbour, *points_in_node, match.T_reference_query);
       if (!refined) return std::nullopt;
       T_neighbour_node = refined->T_node_robot.mean;
     }
     return Shift{node, At(node).T_world_robot, At(neighbour).T_world_robot * T_neighbour_node};
   }
 
-  const MappingResult& map_;
+  const BuildingMap& map_;
   const FloorJoinOptions& options_;
   bool refine_;
   JointMatcher matcher_;
@@ -155,7 +154,7 @@ bool HasUnknownFloors(const FloorTimeline& floors) {
                      [](const FloorLevel& level) { return !level.identity_known; });
 }
 
-FloorJoining JoinFloors(const MappingResult& map, const FloorTimeline& floors,
+FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
                         const FloorJoinOptions& options, const LoopClosureOptions& closures) {
   const std::vector<std::string> names = FloorNames(floors.levels);
   std::vector<std::size_t> is_level(floors.levels.size());

@@ -2,19 +2,18 @@
 #include "masked_mapper/joining/piece_search.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <set>
-#include <thread>
 #include <tuple>
 #include <utility>
 
 #include "masked_mapper/map/drives.hpp"
-#include "masked_mapper/map/stretch.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/scan_matching/correlative_search.hpp"
 #include "masked_mapper/scan_matching/floor_search.hpp"
+#include "masked_mapper/scan_matching/for_each.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -44,33 +43,6 @@ FloorSearchOptions FineOptions(const FloorSearchOptions& coarse) {
   fine.max_range_m = 12.0;
   fine.min_score = 0.0;
   return fine;
-}
-
-/// Calls work(0) ... work(count - 1), each once.
-template <typename Work>
-void ForEach(std::size_t count, int threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::thread> pool;
-  for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(std::max(1, threads)));
-       ++i) {
-    pool.emplace_back(run);
-  }
-  run();
-  for (std::thread& thread : pool) thread.join();
-}
-
-ScanPoints AsCloud(const std::vector<Eigen::Vector2d>& points) {
-  ScanPoints cloud;
-  for (const Eigen::Vector2d& point : points) {
-    pcl::PointXY plain;
-    plain.x = static_cast<float>(point.x());
-    plain.y = static_cast<float>(point.y());
-    cloud.push_back(plain);
-  }
-  return cloud;
 }
 
 /// A floor of the older piece.
@@ -124,7 +96,7 @@ Pose2 Aligned(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& pa
 
 class PieceFinder {
  public:
-  PieceFinder(const MappingResult& map, const DriveJoinOptions& options,
+  PieceFinder(const BuildingMap& map, const DriveJoinOptions& options,
               const MatcherOptions& matcher)
       : map_(map), matcher_(matcher), joins_(options) {}
 
@@ -163,6 +135,11 @@ class PieceFinder {
     return {first(poses.begin), first(poses.end)};
   }
 
+  ScanPoints::ConstPtr StretchAround(NodeId node, double half_length_m) const {
+    return PointsAround(map_, node, {half_length_m, kScanEvery, LaidOutBy::kOptimisation},
+                        joins_.search.max_range_m);
+  }
+
   const TrajectoryPose& PoseOf(std::size_t kept) const {
     return map_.trajectory[map_.kept_scans[kept].trajectory_index];
   }
@@ -178,8 +155,8 @@ class PieceFinder {
         if (T_world_before && Distance(*T_world_before, pose.T_world_robot) < kScanEvery) continue;
         T_world_before = pose.T_world_robot;
         if (pose.in_transit || pose.T_world_robot.Translation().norm() > kFarthest) continue;
-        AppendPoints(map_.kept_scans[i].scan, pose.T_world_robot, matcher_.table.max_range_m,
-                     points[pose.floor]);
+        AppendTransformed(*PointsInRobot(map_.kept_scans[i].scan), pose.T_world_robot,
+                          matcher_.table.max_range_m, points[pose.floor]);
         scans[pose.floor].push_back({pose.T_world_robot, pose.floor, &map_.kept_scans[i].scan});
       }
     }
@@ -188,12 +165,13 @@ class PieceFinder {
     seen.min_hits = 1;
     seen.threads = matcher_.threads;
     for (const auto& [floor, cloud] : points) {
-      const ScanPoints thinned = AsCloud(ThinPoints(cloud, kFloorSpacing, 2.0 * kFarthest));
+      const ScanPoints::ConstPtr thinned =
+          AsScanPoints(ThinPoints(cloud, kFloorSpacing, 2.0 * kFarthest));
       OldFloor known;
       known.id = floor;
-      known.coarse = std::make_unique<FloorSearch>(thinned, joins_.search);
+      known.coarse = std::make_unique<FloorSearch>(*thinned, joins_.search);
       if (!known.coarse->HasFloor()) continue;
-      known.fine = std::make_unique<FloorSearch>(thinned, FineOptions(joins_.search));
+      known.fine = std::make_unique<FloorSearch>(*thinned, FineOptions(joins_.search));
       known.seen = RenderGrid(scans[floor], floor, seen);
       floors_.push_back(std::move(known));
     }
@@ -219,10 +197,9 @@ class PieceFinder {
       const std::size_t step = (taken.size() + kPlacesPerFloor - 1) / kPlacesPerFloor;
       for (std::size_t i = 0; i < taken.size(); i += step) {
         const NodeId node = taken[i];
-        Place place{
-            node, floor, At(node).T_world_robot,
-            coarse.Thinned(*StretchAround(map_, node, joins_.stretch_m, joins_.search.max_range_m)),
-            fine.Thinned(*StretchAround(map_, node, kFineStretch, joins_.search.max_range_m))};
+        Place place{node, floor, At(node).T_world_robot,
+                    coarse.Thinned(*StretchAround(node, joins_.stretch_m)),
+                    fine.Thinned(*StretchAround(node, kFineStretch))};
         constexpr std::size_t kLeastPoints = 20;
         if (place.coarse_points.size() >= kLeastPoints) places_.push_back(std::move(place));
       }
@@ -511,7 +488,7 @@ class PieceFinder {
     return {placement, Count(best) + " fit"};
   }
 
-  const MappingResult& map_;
+  const BuildingMap& map_;
   const MatcherOptions& matcher_;
   const DriveJoinOptions& joins_;
   std::vector<OldFloor> floors_;
@@ -520,7 +497,7 @@ class PieceFinder {
 
 }  // namespace
 
-PieceSearchResult FindPiece(const MappingResult& map, const std::vector<std::size_t>& older,
+PieceSearchResult FindPiece(const BuildingMap& map, const std::vector<std::size_t>& older,
                             const std::vector<std::size_t>& newer, const DriveJoinOptions& options,
                             const MatcherOptions& matcher) {
   return PieceFinder(map, options, matcher).Find(older, newer);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "masked_mapper/pose_graph/composed_trace.hpp"
+#include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -34,24 +35,24 @@ void RemovedSteps::Add(const PathStep& step) {
   if (step.edge >= 0) {
     edges_.push_back(step.edge);
   } else {
-    hypotheses_.push_back(step.hypothesis);
+    closures_.push_back(step.closure);
   }
 }
 
 bool RemovedSteps::HoldsEdge(EdgeId id) const { return Holds(edges_, id); }
 
-bool RemovedSteps::HoldsHypothesis(HypothesisId id) const { return Holds(hypotheses_, id); }
+bool RemovedSteps::HoldsClosure(ClosureId id) const { return Holds(closures_, id); }
 
-void LoopSearch::Add(HypothesisId id, const Hypothesis& hypothesis) {
-  const auto last = static_cast<std::size_t>(std::max(hypothesis.a, hypothesis.b));
-  if (hypotheses_of_.size() <= last) hypotheses_of_.resize(last + 1);
-  hypotheses_of_[static_cast<std::size_t>(hypothesis.a)].push_back(id);
-  hypotheses_of_[static_cast<std::size_t>(hypothesis.b)].push_back(id);
+void LoopSearch::Add(ClosureId id, const Closure& closure) {
+  const auto last = static_cast<std::size_t>(std::max(closure.older, closure.newer));
+  if (closures_of_.size() <= last) closures_of_.resize(last + 1);
+  closures_of_[static_cast<std::size_t>(closure.older)].push_back(id);
+  closures_of_[static_cast<std::size_t>(closure.newer)].push_back(id);
 }
 
-void LoopSearch::Drop(HypothesisId id, const Hypothesis& hypothesis) {
-  for (const NodeId end : {hypothesis.a, hypothesis.b}) {
-    std::vector<HypothesisId>& ids = hypotheses_of_[static_cast<std::size_t>(end)];
+void LoopSearch::Drop(ClosureId id, const Closure& closure) {
+  for (const NodeId end : {closure.older, closure.newer}) {
+    std::vector<ClosureId>& ids = closures_of_[static_cast<std::size_t>(end)];
     ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
   }
 }
@@ -68,11 +69,11 @@ LoopSearch::Reached& LoopSearch::At(NodeId node) {
 }
 
 std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
-                                               const std::vector<Hypothesis>& hypotheses,
-                                               NodeId from, NodeId to, double max_trace,
+                                               const std::vector<Closure>& closures, NodeId from,
+                                               NodeId to, double max_trace,
                                                const RemovedSteps& removed) {
   reached_.resize(graph.nodes().size());
-  hypotheses_of_.resize(graph.nodes().size());
+  closures_of_.resize(graph.nodes().size());
   ++search_;
   std::priority_queue<Entry, std::vector<Entry>, Later> queue;
   At(from).unvalidated = 0;
@@ -93,8 +94,9 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
         const Edge& edge = graph.edges()[static_cast<std::size_t>(here.edge)];
         here.T_from_node = before * (edge.to == node ? edge.T_from_to : Inverse(edge.T_from_to));
       } else {
-        const Hypothesis& taken = hypotheses[static_cast<std::size_t>(here.hypothesis)];
-        here.T_from_node = before * (taken.b == node ? taken.T_a_b : Inverse(taken.T_a_b));
+        const Closure& taken = closures[static_cast<std::size_t>(here.closure)];
+        here.T_from_node =
+            before * (taken.newer == node ? taken.T_older_newer : Inverse(taken.T_older_newer));
       }
     }
     if (node == to) {
@@ -103,7 +105,7 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
     }
     const ComposedTrace trace(here.T_from_node);
     const auto offer = [&](NodeId next, const UncertainPose2& T, bool forward, int unvalidated,
-                           EdgeId edge, HypothesisId hypothesis) {
+                           EdgeId edge, ClosureId closure) {
       Reached& there = At(next);
       if (there.settled) return;
       const double trace_there = forward ? trace.With(T) : trace.WithInverse(T);
@@ -116,7 +118,7 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
       there.unvalidated = unvalidated;
       there.trace = trace_there;
       there.edge = edge;
-      there.hypothesis = hypothesis;
+      there.closure = closure;
       there.parent = node;
       queue.push({unvalidated, trace_there, next});
     };
@@ -126,12 +128,13 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
       const bool forward = edge.from == node;
       offer(forward ? edge.to : edge.from, edge.T_from_to, forward, here.unvalidated, id, -1);
     }
-    for (const HypothesisId id : hypotheses_of_[static_cast<std::size_t>(node)]) {
-      if (removed.HoldsHypothesis(id)) continue;
-      const Hypothesis& closure = hypotheses[static_cast<std::size_t>(id)];
-      const bool forward = closure.a == node;
-      offer(forward ? closure.b : closure.a, closure.T_a_b, forward,
-            here.unvalidated + (closure.validated ? 0 : 1), -1, id);
+    for (const ClosureId id : closures_of_[static_cast<std::size_t>(node)]) {
+      if (removed.HoldsClosure(id)) continue;
+      const Closure& closure = closures[static_cast<std::size_t>(id)];
+      const bool forward = closure.older == node;
+      const bool is_validated = closure.state == ClosureState::kValidated;
+      offer(forward ? closure.newer : closure.older, closure.T_older_newer, forward,
+            here.unvalidated + (is_validated ? 0 : 1), -1, id);
     }
   }
   if (!found) return std::nullopt;
@@ -140,14 +143,14 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
   path.unvalidated = At(to).unvalidated;
   for (NodeId node = to; node != from; node = At(node).parent) {
     const Reached& reached = At(node);
-    path.steps.push_back({reached.edge, reached.hypothesis, node, reached.ways});
+    path.steps.push_back({reached.edge, reached.closure, node, reached.ways});
   }
   std::reverse(path.steps.begin(), path.steps.end());
   return path;
 }
 
 const PathStep& MostRedundantStep(const LeastErrorPath& path) {
-  if (path.steps.empty()) std::abort();
+  Check(!path.steps.empty(), "a path has a step");
   const auto last = static_cast<std::int64_t>(path.steps.size()) - 1;
   const auto from_middle = [&](std::int64_t i) { return std::abs(2 * i - last); };
   std::int64_t best = 0;

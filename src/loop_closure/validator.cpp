@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -40,57 +40,57 @@ ValidatorOptions PaperRule() {
 
 LoopValidator::LoopValidator(const ValidatorOptions& options) : options_(options) {}
 
-std::vector<HypothesisId> LoopValidator::Judge(const PoseGraph& graph,
-                                               const std::vector<Hypothesis>& matches) {
+std::vector<ClosureId> LoopValidator::Judge(const PoseGraph& graph,
+                                            const std::vector<ClosureId>& matches,
+                                            std::vector<Closure>& closures) {
   newly_valid_.clear();
+  standings_.resize(closures.size());
   int known_ties = ties_;
-  const auto is_node = [&](NodeId id) {
-    return id >= 0 && static_cast<std::size_t>(id) < graph.nodes().size();
-  };
-  for (const Hypothesis& match : matches) {
-    if (!is_node(match.a) || !is_node(match.b) || match.a == match.b) std::abort();
+  for (const ClosureId id : matches) {
     // One after the other, so that a loop is met once: when the last of its closures is judged.
-    const auto id = static_cast<HypothesisId>(hypotheses_.size());
-    hypotheses_.push_back({match.a, match.b, match.T_a_b, 0, false});
-    standings_.push_back({0, {match.a}});
-    JudgeOne(graph, id);
-    search_.Add(id, hypotheses_.back());
+    const Closure& match = closures[static_cast<std::size_t>(id)];
+    const auto nodes = static_cast<NodeId>(graph.nodes().size());
+    Check(match.older >= 0 && match.newer >= 0 && match.older < nodes && match.newer < nodes &&
+              match.older != match.newer,
+          "the ends of a match are two nodes of the graph");
+    StandingOf(id).places = {match.newer};
+    JudgeOne(graph, id, closures);
+    search_.Add(id, match);
   }
   // What entered without a sure way may be the sure way that others were waiting for.
   while (known_ties != ties_) {
     known_ties = ties_;
-    const std::vector<HypothesisId> waiting = waiting_;
-    for (const HypothesisId id : waiting) Admit(graph, id);
+    const std::vector<ClosureId> waiting = waiting_;
+    for (const ClosureId id : waiting) Admit(graph, id, closures);
   }
-  for (const HypothesisId id : newly_valid_) {
-    search_.Drop(id, hypotheses_[static_cast<std::size_t>(id)]);
+  for (const ClosureId id : newly_valid_) {
+    search_.Drop(id, closures[static_cast<std::size_t>(id)]);
   }
   std::sort(newly_valid_.begin(), newly_valid_.end());
   return newly_valid_;
 }
 
-void LoopValidator::JudgeOne(const PoseGraph& graph, HypothesisId id) {
-  const Hypothesis judged = hypotheses_[static_cast<std::size_t>(id)];
-  const UncertainPose2 T_b_a = Inverse(judged.T_a_b);
+void LoopValidator::JudgeOne(const PoseGraph& graph, ClosureId id, std::vector<Closure>& closures) {
+  Closure& judged = closures[static_cast<std::size_t>(id)];
   RemovedSteps removed;
-  std::vector<std::vector<HypothesisId>> heard;  // companions of loose loops
+  std::vector<std::vector<ClosureId>> heard;  // companions of loose loops
   for (int loops = 0; loops < options_.max_loops; ++loops) {
-    const Hypothesis& now = hypotheses_[static_cast<std::size_t>(id)];
-    if (now.validated || (now.votes == 0 && loops >= options_.hopeless_loops)) return;
+    if (judged.state == ClosureState::kValidated) return;
+    if (judged.votes == 0 && loops >= options_.hopeless_loops) return;
     const std::optional<LeastErrorPath> path =
-        search_.Find(graph, hypotheses_, judged.a, judged.b, options_.max_loop_trace, removed);
+        search_.Find(graph, closures, judged.newer, judged.older, options_.max_loop_trace, removed);
     if (!path) return;
     removed.Add(MostRedundantStep(*path));
 
-    const UncertainPose2 loop = path->T_from_to * T_b_a;
+    const UncertainPose2 loop = path->T_from_to * judged.T_older_newer;
     const double trace = loop.covariance.trace();
     if (trace > options_.max_loop_trace) continue;
     if (MahalanobisFromIdentity(loop) >= options_.max_loop_error) continue;
-    std::vector<HypothesisId> agreeing;
+    std::vector<ClosureId> agreeing;
     for (const PathStep& step : path->steps) {
-      if (step.hypothesis < 0) continue;
-      if (hypotheses_[static_cast<std::size_t>(step.hypothesis)].validated) continue;
-      agreeing.push_back(step.hypothesis);
+      if (step.closure < 0) continue;
+      const Closure& closure = closures[static_cast<std::size_t>(step.closure)];
+      if (closure.state != ClosureState::kValidated) agreeing.push_back(step.closure);
     }
     std::sort(agreeing.begin(), agreeing.end());
     const bool tight = trace <= options_.tight_loop_trace;
@@ -101,69 +101,68 @@ void LoopValidator::JudgeOne(const PoseGraph& graph, HypothesisId id) {
     agreeing.push_back(id);
     // Where the way knows more than the match, there is nothing to gain by a hurry.
     if (path->unvalidated == 0 && trace <= options_.sure_loop_trace &&
-        judged.T_a_b.covariance.trace() <= path->T_from_to.covariance.trace()) {
-      int& votes = hypotheses_[static_cast<std::size_t>(id)].votes;
-      votes = std::max(votes, options_.votes_needed - 1);
+        judged.T_older_newer.covariance.trace() <= path->T_from_to.covariance.trace()) {
+      judged.votes = std::max(judged.votes, options_.votes_needed - 1);
     }
-    CountLoop(graph, agreeing, tight);
+    CountLoop(graph, agreeing, tight, closures);
   }
 }
 
-void LoopValidator::CountLoop(const PoseGraph& graph, const std::vector<HypothesisId>& agreeing,
-                              bool tight) {
-  const auto position = [&](NodeId node) {
-    return graph.nodes()[static_cast<std::size_t>(node)].T_world_robot;
-  };
-  for (const HypothesisId one : agreeing) {
-    std::vector<NodeId>& places = standings_[static_cast<std::size_t>(one)].places;
-    for (const HypothesisId other : agreeing) {
-      const NodeId place = hypotheses_[static_cast<std::size_t>(other)].a;
+void LoopValidator::CountLoop(const PoseGraph& graph, const std::vector<ClosureId>& agreeing,
+                              bool tight, std::vector<Closure>& closures) {
+  const auto position = [&](NodeId node) { return graph.node(node).T_world_robot; };
+  for (const ClosureId one : agreeing) {
+    std::vector<NodeId>& places = StandingOf(one).places;
+    for (const ClosureId other : agreeing) {
+      const NodeId place = closures[static_cast<std::size_t>(other)].newer;
       const bool far = std::all_of(places.begin(), places.end(), [&](NodeId known) {
         return Distance(position(known), position(place)) > options_.place_radius_m;
       });
       if (far) places.push_back(place);
     }
   }
-  for (const HypothesisId one : agreeing) {
-    Standing& standing = standings_[static_cast<std::size_t>(one)];
+  for (const ClosureId one : agreeing) {
+    Standing& standing = StandingOf(one);
     if (!tight && standing.loose_votes >= options_.max_loose_votes) continue;
     if (!tight) ++standing.loose_votes;
-    if (++hypotheses_[static_cast<std::size_t>(one)].votes == options_.votes_needed) {
+    if (++closures[static_cast<std::size_t>(one)].votes == options_.votes_needed) {
       waiting_.push_back(one);
     }
-    Admit(graph, one);
+    Admit(graph, one, closures);
   }
 }
 
-void LoopValidator::Admit(const PoseGraph& graph, HypothesisId id) {
-  Hypothesis& hypothesis = hypotheses_[static_cast<std::size_t>(id)];
-  if (hypothesis.validated || hypothesis.votes < options_.votes_needed) return;
-  Standing& standing = standings_[static_cast<std::size_t>(id)];
+void LoopValidator::Admit(const PoseGraph& graph, ClosureId id, std::vector<Closure>& closures) {
+  Closure& closure = closures[static_cast<std::size_t>(id)];
+  if (closure.state == ClosureState::kValidated || closure.votes < options_.votes_needed) return;
+  Standing& standing = StandingOf(id);
   if (standing.refused_with_places == standing.places.size() &&
       standing.refused_with_ties == ties_) {
     return;
   }
-  if (!MayEnter(graph, id)) {
+  if (!MayEnter(graph, id, closures)) {
     standing.refused_with_places = standing.places.size();
     standing.refused_with_ties = ties_;
     return;
   }
-  hypothesis.validated = true;
+  closure.state = ClosureState::kValidated;
+  closure.reason = ClosureReason::kEnoughVotes;
   newly_valid_.push_back(id);
   waiting_.erase(std::remove(waiting_.begin(), waiting_.end(), id), waiting_.end());
 }
 
 // Beside the votes: what the best validated way says of the closure. The sure ways are looked at
 // first, since a search without limit costs as much as the map is large.
-bool LoopValidator::MayEnter(const PoseGraph& graph, HypothesisId id) {
-  const Hypothesis& hypothesis = hypotheses_[static_cast<std::size_t>(id)];
-  const int places = static_cast<int>(standings_[static_cast<std::size_t>(id)].places.size());
+bool LoopValidator::MayEnter(const PoseGraph& graph, ClosureId id,
+                             const std::vector<Closure>& closures) {
+  const Closure& closure = closures[static_cast<std::size_t>(id)];
+  const int places = static_cast<int>(StandingOf(id).places.size());
   for (const double max_trace : {options_.max_loop_trace, kNoLimit}) {
     if (max_trace == kNoLimit && places < options_.places_needed) return false;
     const std::optional<LeastErrorPath> path =
-        search_.Find(graph, hypotheses_, hypothesis.a, hypothesis.b, max_trace, RemovedSteps());
+        search_.Find(graph, closures, closure.newer, closure.older, max_trace, RemovedSteps());
     if (!path || path->unvalidated > 0) continue;
-    const UncertainPose2 loop = path->T_from_to * Inverse(hypothesis.T_a_b);
+    const UncertainPose2 loop = path->T_from_to * closure.T_older_newer;
     const double error = MahalanobisFromIdentity(loop);
     const bool enters =
         error <= options_.max_contradiction && places >= PlacesNeeded(options_, loop, error);

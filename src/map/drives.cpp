@@ -20,28 +20,28 @@ std::size_t FirstPose(const Drive& drive) { return drive.first_pose; }
 
 }  // namespace
 
-std::size_t DriveOfNode(const MappingResult& map, NodeId node) {
+std::size_t DriveOfNode(const BuildingMap& map, NodeId node) {
   return DriveAt(map.drives, static_cast<std::size_t>(node), FirstNode);
 }
 
-std::size_t DriveOfPose(const MappingResult& map, std::size_t trajectory_index) {
+std::size_t DriveOfPose(const BuildingMap& map, std::size_t trajectory_index) {
   return DriveAt(map.drives, trajectory_index, FirstPose);
 }
 
-IndexRange NodesOfDrive(const MappingResult& map, std::size_t drive) {
+IndexRange NodesOfDrive(const BuildingMap& map, std::size_t drive) {
   if (map.drives.empty()) return {0, map.graph.nodes().size()};
   return {FirstNode(map.drives.at(drive)), drive + 1 < map.drives.size()
                                                ? FirstNode(map.drives[drive + 1])
                                                : map.graph.nodes().size()};
 }
 
-IndexRange PosesOfDrive(const MappingResult& map, std::size_t drive) {
+IndexRange PosesOfDrive(const BuildingMap& map, std::size_t drive) {
   if (map.drives.empty()) return {0, map.trajectory.size()};
   return {FirstPose(map.drives.at(drive)),
           drive + 1 < map.drives.size() ? FirstPose(map.drives[drive + 1]) : map.trajectory.size()};
 }
 
-std::vector<std::size_t> PiecesOfDrives(const MappingResult& map) {
+std::vector<std::size_t> PiecesOfDrives(const BuildingMap& map) {
   // Each drive hangs together by its motion: only closures between drives tell pieces apart.
   std::vector<std::size_t> root(std::max<std::size_t>(1, map.drives.size()));
   std::iota(root.begin(), root.end(), std::size_t{0});
@@ -62,7 +62,7 @@ std::vector<std::size_t> PiecesOfDrives(const MappingResult& map) {
   return piece;
 }
 
-std::vector<DriveFacts> FactsOfDrives(const MappingResult& map) {
+std::vector<DriveFacts> FactsOfDrives(const BuildingMap& map) {
   const std::vector<std::size_t> pieces = PiecesOfDrives(map);
   std::vector<DriveFacts> facts;
   for (std::size_t i = 0; i < map.drives.size(); ++i) {
@@ -92,6 +92,19 @@ std::vector<DriveFacts> FactsOfDrives(const MappingResult& map) {
     ++facts[other].closures_to_others;
   }
   return facts;
+}
+
+std::vector<std::string> WarningsOf(const BuildingMap& map) {
+  std::vector<std::string> warnings = map.warnings;
+  const std::vector<std::size_t> pieces = PiecesOfDrives(map);
+  std::size_t told = 0;
+  for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
+    if (pieces[drive] <= told) continue;
+    told = pieces[drive];
+    warnings.push_back(map.drives[drive].log + ": stays a piece of its own, beside the others: " +
+                       map.drives[drive].reason);
+  }
+  return warnings;
 }
 
 }  // namespace masked_mapper

@@ -22,12 +22,12 @@ namespace {
 constexpr std::int64_t kCheckpointApplicationId = 0x4d6d636b;  // "Mmck"
 /// To be raised whenever the state of anything changes its shape. A checkpoint lives for hours and
 /// is not upgraded.
-constexpr std::int64_t kCheckpointVersion = 2;
+constexpr std::int64_t kCheckpointVersion = 3;
 
 /// A checkpoint may take this share of the time to the next one.
 constexpr double kShare = 0.03;
 
-enum class PieceKind : std::int64_t { kPoses, kScans, kPoints };
+enum class PieceKind : std::int64_t { kPoses, kScans };
 
 }  // namespace
 
@@ -102,38 +102,31 @@ class CheckpointFile::Impl {
         case PieceKind::kScans:
           AppendScans(bytes, checkpoint.parts);
           break;
-        case PieceKind::kPoints:
-          AppendPoints(bytes, checkpoint.parts);
-          break;
         default:
           throw DatabaseError("a piece of no known kind");
       }
     }
     poses_ = checkpoint.parts.trajectory.size();
     scans_ = checkpoint.parts.kept_scans.size();
-    nodes_ = checkpoint.parts.points_of_nodes.size();
     return checkpoint;
   }
 
-  void Write(const CheckpointState& state, const MappingResult& map) {
-    const std::vector<Node>& nodes = map.graph.nodes();
+  void Write(const CheckpointState& state, const BuildingMap& map) {
     Transaction transaction(database_);
     if (starts_over_) database_.Run("DELETE FROM pieces");
     WritePiece(PieceKind::kPoses, PackPoses(map.trajectory, poses_));
     WritePiece(PieceKind::kScans, PackScans(map.kept_scans, scans_));
-    WritePiece(PieceKind::kPoints, PackPoints(nodes, nodes_));
     Statement write(database_, "INSERT OR REPLACE INTO state VALUES (0,?,?,?,?)");
     write.Bind(static_cast<std::int64_t>(state.observations)).Bind(state.progress);
     write.BindBlob(state.bytes).Bind(std::int64_t{Checksum(state.bytes)}).Put();
     transaction.Commit();
     poses_ = map.trajectory.size();
     scans_ = map.kept_scans.size();
-    nodes_ = nodes.size();
     starts_over_ = false;
   }
 
   void StartOver() {
-    poses_ = scans_ = nodes_ = 0;
+    poses_ = scans_ = 0;
     starts_over_ = true;
   }
 
@@ -156,7 +149,6 @@ class CheckpointFile::Impl {
   Database database_;
   std::size_t poses_ = 0;
   std::size_t scans_ = 0;
-  std::size_t nodes_ = 0;
   bool starts_over_ = false;
 };
 
@@ -216,7 +208,7 @@ std::optional<Checkpoint> CheckpointFile::Load() {
 
 bool CheckpointFile::IsDue() { return Clock::now() >= due_; }
 
-void CheckpointFile::Save(const CheckpointState& state, const MappingResult& map) {
+void CheckpointFile::Save(const CheckpointState& state, const BuildingMap& map) {
   const Clock::time_point start = Clock::now();
   try {
     if (!impl_) {

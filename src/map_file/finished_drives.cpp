@@ -25,7 +25,7 @@ fs::path FinishedFile(const fs::path& folder, std::size_t drive) {
 FinishedDrives::FinishedDrives(const fs::path& out, const MapOrigin& origin, bool resume)
     : folder_(UnfinishedFolder(out)), origin_(origin), resume_(resume) {}
 
-std::optional<MappingResult> FinishedDrives::Load(std::size_t drive) {
+std::optional<BuildingMap> FinishedDrives::Load(std::size_t drive) {
   const fs::path file = FinishedFile(folder_, drive);
   if (!resume_ || !fs::exists(file)) return std::nullopt;
   try {
@@ -44,7 +44,7 @@ std::optional<MappingResult> FinishedDrives::Load(std::size_t drive) {
   }
 }
 
-void FinishedDrives::Save(std::size_t drive, const MappingResult& result) {
+void FinishedDrives::Save(std::size_t drive, const BuildingMap& result) {
   std::error_code ignored;
   fs::create_directories(folder_);
   const fs::path file = FinishedFile(folder_, drive);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -33,8 +34,10 @@ constexpr std::uint64_t kLargestGrowth = 256;
 
 class Reader {
  public:
-  Reader(const Database& database, std::uint64_t file_size)
-      : database_(database), bytes_left_(file_size * kLargestGrowth + (1U << 20U)) {}
+  Reader(const Database& database, std::int64_t version, std::uint64_t file_size)
+      : database_(database),
+        version_(version),
+        bytes_left_(file_size * kLargestGrowth + (1U << 20U)) {}
 
   SavedMap Read() {
     ReadOptions();
@@ -43,9 +46,10 @@ class Reader {
     ReadFloors();
     ReadNodes();
     ReadEdges();
-    ReadAttempts();
+    ReadClosures();
     ReadTrajectory();
     ReadScans();
+    Link();
     ReadDrives();
     return std::move(map_);
   }
@@ -88,6 +92,17 @@ class Reader {
       Malformed(table, what + " " + std::to_string(value) + " does not exist");
     }
     return value;
+  }
+
+  // -1 where there is none; that it exists is for later.
+  static std::int32_t TakeIdOrNone(Statement& row, const std::string& table,
+                                   const std::string& what) {
+    if (row.NextType() == ValueType::kNull) {
+      row.Skip();
+      return -1;
+    }
+    return static_cast<std::int32_t>(
+        TakeBelow(row, std::numeric_limits<std::int32_t>::max(), table, what));
   }
 
   static bool TakeFlag(Statement& row, const std::string& table) {
@@ -206,26 +221,14 @@ class Reader {
           static_cast<FloorId>(TakeBelow(rows, graph.floors().size(), "nodes", "the floor"));
       node.T_odom_robot = TakePose(rows, "nodes");
       node.T_world_robot = TakePose(rows, "nodes");
-      if (rows.NextType() != ValueType::kNull) node.points_in_robot = TakePoints(rows);
+      // Before version 3 a node's points stand here; of them all that is told is that it has some.
+      if (version_ <= 2) {
+        node.scan = rows.NextType() == ValueType::kNull ? -1 : 0;
+      } else {
+        node.scan = TakeIdOrNone(rows, "nodes", "the scan");
+      }
       graph.AddNode(std::move(node));
     }
-  }
-
-  ScanPoints::ConstPtr TakePoints(Statement& row) {
-    const std::int64_t count = row.Integer();
-    const std::string bytes = TakePacked(row, count, kPointBytes, "nodes");
-    ScanPoints::Ptr points(new ScanPoints);
-    std::string_view rest = bytes;
-    while (!rest.empty()) {
-      pcl::PointXY point;
-      point.x = TakeNumber<float>(rest);
-      point.y = TakeNumber<float>(rest);
-      if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-        Malformed("nodes", "a point is not finite");
-      }
-      points->push_back(point);
-    }
-    return points;
   }
 
   void ReadEdges() {
@@ -245,29 +248,99 @@ class Reader {
       if (edge.from == edge.to || (edge.kind == EdgeKind::kClosure && !same_floor)) {
         Malformed("edges", "an edge between nodes that none can join");
       }
+      edge.closure = TakeIdOrNone(rows, "edges", "the closure");
       graph.AddEdge(edge);
     }
   }
 
-  void ReadAttempts() {
+  void ReadClosures() {
     const std::size_t nodes = map_.result.graph.nodes().size();
-    Statement rows(database_, "SELECT * FROM attempts ORDER BY id");
+    const std::string table = version_ <= 2 ? "attempts" : "closures";
+    Statement rows(database_, "SELECT * FROM " + table + " ORDER BY id");
     while (rows.Next()) {
-      TakeId(rows, map_.result.attempts.size(), "attempts");
-      ClosureAttempt attempt;
-      attempt.a = static_cast<NodeId>(TakeBelow(rows, nodes, "attempts", "the node"));
-      attempt.b = static_cast<NodeId>(TakeBelow(rows, nodes, "attempts", "the node"));
-      attempt.T_a_b.mean = TakePose(rows, "attempts");
-      attempt.T_a_b.covariance = TakeCovariance(rows, "attempts");
-      attempt.score = Finite(rows, "attempts");
-      attempt.mahalanobis = Finite(rows, "attempts");
-      attempt.agreement = Finite(rows, "attempts");
-      attempt.votes = static_cast<int>(
-          TakeBelow(rows, std::size_t{std::numeric_limits<int>::max()}, "attempts", "the count"));
-      attempt.state = TakeName<ClosureState>(rows, kClosureStates, "attempts");
-      attempt.reason = rows.Text();
-      map_.result.attempts.push_back(std::move(attempt));
+      TakeId(rows, map_.result.closures.size(), table);
+      Closure closure;
+      closure.older = static_cast<NodeId>(TakeBelow(rows, nodes, table, "the node"));
+      closure.newer = static_cast<NodeId>(TakeBelow(rows, nodes, table, "the node"));
+      closure.T_older_newer.mean = TakePose(rows, table);
+      closure.T_older_newer.covariance = TakeCovariance(rows, table);
+      if (version_ <= 2) {  // the newer one came first
+        std::swap(closure.older, closure.newer);
+        closure.T_older_newer = Inverse(closure.T_older_newer);
+      }
+      closure.score = Finite(rows, table);
+      closure.mahalanobis = Finite(rows, table);
+      closure.agreement = Finite(rows, table);
+      closure.votes = static_cast<int>(
+          TakeBelow(rows, std::size_t{std::numeric_limits<int>::max()}, table, "the count"));
+      const std::optional<ClosureState> state = ClosureStateOf(rows.Text());
+      const std::optional<ClosureReason> reason = ClosureReasonOf(rows.Text());
+      if (!state || !reason) Malformed(table, "an unknown name");
+      closure.state = *state;
+      closure.reason = *reason;
+      map_.result.closures.push_back(std::move(closure));
     }
+  }
+
+  // What names another row must name one that there is, and that fits.
+  void Link() {
+    std::vector<Node> nodes = map_.result.graph.nodes();
+    for (Node& node : nodes) {
+      if (node.HasScan()) node.scan = ScanOf(node);
+    }
+    std::vector<Edge> edges = map_.result.graph.edges();
+    if (version_ <= 2) NameClosures(edges);
+    PoseGraph linked;
+    for (const Floor& floor : map_.result.graph.floors()) linked.AddFloor(floor);
+    for (Node& node : nodes) linked.AddNode(std::move(node));
+    for (Edge& edge : edges) {
+      if (edge.closure >= 0 && !IsOf(edge)) Malformed("edges", "an edge of another closure");
+      linked.AddEdge(std::move(edge));
+    }
+    map_.result.graph = std::move(linked);
+  }
+
+  // Before version 3 a node's scan need not be among the kept ones: the one kept next to it is.
+  KeptScanId ScanOf(const Node& node) const {
+    const std::vector<KeptScan>& kept = map_.result.kept_scans;
+    if (version_ > 2) {
+      if (static_cast<std::size_t>(node.scan) < kept.size()) return node.scan;
+      Malformed("nodes", "a node of a scan that does not exist");
+    }
+    const auto off = [&](const KeptScan& scan) { return std::abs(scan.scan.stamp - node.stamp); };
+    const auto nearest = std::min_element(
+        kept.begin(), kept.end(),
+        [&](const KeptScan& one, const KeptScan& other) { return off(one) < off(other); });
+    return nearest == kept.end() ? -1 : static_cast<KeptScanId>(nearest - kept.begin());
+  }
+
+  // Before version 3 the closures of a pair stand among the edges in the order of their records,
+  // and lead from the newer node to the older.
+  void NameClosures(std::vector<Edge>& edges) const {
+    std::map<std::pair<NodeId, NodeId>, std::vector<ClosureId>> unnamed;
+    for (std::size_t i = map_.result.closures.size(); i-- > 0;) {
+      const Closure& closure = map_.result.closures[i];
+      if (closure.state != ClosureState::kValidated) continue;
+      unnamed[{closure.newer, closure.older}].push_back(static_cast<ClosureId>(i));
+    }
+    for (Edge& edge : edges) {
+      const auto found = unnamed.find({edge.from, edge.to});
+      if (edge.kind != EdgeKind::kClosure || found == unnamed.end() || found->second.empty()) {
+        continue;
+      }
+      edge.closure = found->second.back();
+      found->second.pop_back();
+      std::swap(edge.from, edge.to);
+      edge.T_from_to = Inverse(edge.T_from_to);
+    }
+  }
+
+  bool IsOf(const Edge& edge) const {
+    const auto id = static_cast<std::size_t>(edge.closure);
+    if (edge.kind != EdgeKind::kClosure || id >= map_.result.closures.size()) return false;
+    const Closure& closure = map_.result.closures[id];
+    return closure.state == ClosureState::kValidated && closure.older == edge.from &&
+           closure.newer == edge.to;
   }
 
   void ReadTrajectory() {
@@ -345,7 +418,7 @@ class Reader {
 
   // Drives follow each other, each with a node and a pose at least, and keep to themselves.
   void ReadDrives() {
-    MappingResult& map = map_.result;
+    BuildingMap& map = map_.result;
     Statement rows(database_, "SELECT * FROM drives ORDER BY id");
     while (rows.Next()) {
       TakeId(rows, map.drives.size(), "drives");
@@ -383,6 +456,7 @@ class Reader {
   }
 
   const Database& database_;
+  std::int64_t version_;      // of the file
   std::uint64_t bytes_left_;  // that may still be unpacked
   SavedMap map_;
 };
@@ -421,10 +495,10 @@ SavedMap ReadMapFile(const std::filesystem::path& path) {
     }
     if (version < 1) throw DatabaseError("it has no version");
     CheckSeal(database, version);
-    if (version == kMapVersion) return Reader(database, size).Read();
+    if (version == kMapVersion) return Reader(database, version, size).Read();
     Database upgraded = Database::CopyInMemory(database);
     Upgrade(upgraded, version);
-    return Reader(upgraded, size).Read();
+    return Reader(upgraded, version, size).Read();
   } catch (const DatabaseError& error) {
     throw InputError(path.string() + ": damaged, cannot be used: " + error.what());
   }

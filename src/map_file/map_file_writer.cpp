@@ -26,6 +26,15 @@ void BindPose(const Pose2& pose, Statement& statement) {
 }
 
 // As bytes: a covariance that was composed is not symmetric to the last bit.
+/// An id that is -1 where there is none.
+void BindId(std::int32_t id, Statement& insert) {
+  if (id < 0) {
+    insert.BindNull();
+  } else {
+    insert.Bind(std::int64_t{id});
+  }
+}
+
 void BindCovariance(const Eigen::Matrix3d& covariance, Statement& statement) {
   std::string bytes;
   for (int row = 0; row < 3; ++row) {
@@ -34,7 +43,7 @@ void BindCovariance(const Eigen::Matrix3d& covariance, Statement& statement) {
   statement.BindBlob(bytes);
 }
 
-void WriteOrigin(const MapOrigin& origin, const MappingResult& result, const Database& database) {
+void WriteOrigin(const MapOrigin& origin, const BuildingMap& result, const Database& database) {
   Statement run(database, "INSERT INTO run(key, value) VALUES (?,?)");
   run.BindText("log").BindText(origin.log).Put();
   run.BindText("mask").BindText(origin.mask).Put();
@@ -53,7 +62,7 @@ void WriteOrigin(const MapOrigin& origin, const MappingResult& result, const Dat
   }
 }
 
-void WriteLog(const MappingResult& result, const Database& database) {
+void WriteLog(const BuildingMap& result, const Database& database) {
   const LogStatistics& log = result.log;
   Statement insert(database, "INSERT INTO log_statistics(key, value) VALUES (?,?)");
   for (const LogCount& count : kLogCounts) {
@@ -79,49 +88,40 @@ void WriteNodes(const PoseGraph& graph, const Database& database) {
     floor.Bind(Id(i)).BindText(f.label).Bind(f.elevation).Bind(f.elevation_sigma);
     floor.Bind(std::int64_t{f.elevation_measured}).Bind(std::int64_t{f.label_given}).Put();
   }
-  Statement insert(database, "INSERT INTO nodes VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
+  Statement insert(database, "INSERT INTO nodes VALUES (?,?,?,?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
     const Node& node = graph.nodes()[i];
     insert.Bind(Id(i)).Bind(node.stamp).Bind(std::int64_t{node.floor});
     BindPose(node.T_odom_robot, insert);
     BindPose(node.T_world_robot, insert);
-    if (!node.HasScan()) {
-      insert.BindNull().BindNull().BindNull().Put();
-      continue;
-    }
-    std::string bytes;
-    for (const pcl::PointXY& point : *node.points_in_robot) {
-      AppendBytes(point.x, bytes);
-      AppendBytes(point.y, bytes);
-    }
-    const std::string packed = Pack(bytes, kPointBytes);
-    insert.Bind(Id(node.points_in_robot->size())).BindBlob(packed);
-    insert.Bind(std::int64_t{Checksum(packed)}).Put();
+    BindId(node.scan, insert);
+    insert.Put();
   }
 }
 
 void WriteEdges(const PoseGraph& graph, const Database& database) {
-  Statement insert(database, "INSERT INTO edges VALUES (?,?,?,?,?,?,?,?)");
+  Statement insert(database, "INSERT INTO edges VALUES (?,?,?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const Edge& edge = graph.edges()[i];
     insert.Bind(Id(i)).Bind(std::int64_t{edge.from}).Bind(std::int64_t{edge.to});
     insert.BindText(NameOf(kEdgeKinds, edge.kind));
     BindPose(edge.T_from_to.mean, insert);
     BindCovariance(edge.T_from_to.covariance, insert);
+    BindId(edge.closure, insert);
     insert.Put();
   }
 }
 
-void WriteAttempts(const std::vector<ClosureAttempt>& attempts, const Database& database) {
-  Statement insert(database, "INSERT INTO attempts VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  for (std::size_t i = 0; i < attempts.size(); ++i) {
-    const ClosureAttempt& attempt = attempts[i];
-    insert.Bind(Id(i)).Bind(std::int64_t{attempt.a}).Bind(std::int64_t{attempt.b});
-    BindPose(attempt.T_a_b.mean, insert);
-    BindCovariance(attempt.T_a_b.covariance, insert);
-    insert.Bind(attempt.score).Bind(attempt.mahalanobis).Bind(attempt.agreement);
-    insert.Bind(std::int64_t{attempt.votes}).BindText(NameOf(kClosureStates, attempt.state));
-    insert.BindText(attempt.reason).Put();
+void WriteClosures(const std::vector<Closure>& closures, const Database& database) {
+  Statement insert(database, "INSERT INTO closures VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    const Closure& closure = closures[i];
+    insert.Bind(Id(i)).Bind(std::int64_t{closure.older}).Bind(std::int64_t{closure.newer});
+    BindPose(closure.T_older_newer.mean, insert);
+    BindCovariance(closure.T_older_newer.covariance, insert);
+    insert.Bind(closure.score).Bind(closure.mahalanobis).Bind(closure.agreement);
+    insert.Bind(std::int64_t{closure.votes}).BindText(Name(closure.state));
+    insert.BindText(Name(closure.reason)).Put();
   }
 }
 
@@ -180,7 +180,7 @@ void WriteDrives(const std::vector<Drive>& drives, const Database& database) {
 
 }  // namespace
 
-void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
+void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
                   const std::filesystem::path& path) {
   try {
     Database database(path, OpenMode::kWrite);
@@ -195,7 +195,7 @@ void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
     WriteLog(result, database);
     WriteNodes(result.graph, database);
     WriteEdges(result.graph, database);
-    WriteAttempts(result.attempts, database);
+    WriteClosures(result.closures, database);
     WriteTrajectory(result.trajectory, database);
     WriteScans(result.kept_scans, database);
     WriteDrives(result.drives, database);

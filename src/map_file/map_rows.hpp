@@ -13,13 +13,10 @@ namespace masked_mapper {
 constexpr std::size_t kPosesPerRow = 1024;
 /// stamp f64, floor i32, in_transit u8, node_before i32, T_odom_robot 3 f64, T_world_robot 3 f64
 constexpr std::size_t kPoseBytes = 8 + 4 + 1 + 4 + 24 + 24;
-constexpr std::size_t kPointBytes = 2 * sizeof(float);
 constexpr std::size_t kCovarianceBytes = 9 * sizeof(double);
 
 /// By enumeration value.
 constexpr std::array<const char*, 3> kEdgeKinds = {"odometry", "floor_change", "closure"};
-constexpr std::array<const char*, 4> kClosureStates = {"rejected_score", "hypothesis", "validated",
-                                                       "audited_out"};
 constexpr std::array<const char*, 4> kMotionSources = {"auto", "odometry", "scans", "fused"};
 
 struct LogCount {

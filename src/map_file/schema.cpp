@@ -33,14 +33,15 @@ constexpr std::array<Table, 13> kTables = {{
      "id INTEGER PRIMARY KEY, stamp ANY NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
      " odom_x ANY NOT NULL, odom_y ANY NOT NULL, odom_theta ANY NOT NULL,"
      " world_x ANY NOT NULL, world_y ANY NOT NULL, world_theta ANY NOT NULL,"
-     " point_count INTEGER, points BLOB, points_checksum INTEGER"},
+     " scan INTEGER"},
     {"edges",
      "id INTEGER PRIMARY KEY, from_node INTEGER NOT NULL REFERENCES nodes(id),"
      " to_node INTEGER NOT NULL REFERENCES nodes(id), kind TEXT NOT NULL,"
-     " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL"},
-    {"attempts",
-     "id INTEGER PRIMARY KEY, a INTEGER NOT NULL REFERENCES nodes(id),"
-     " b INTEGER NOT NULL REFERENCES nodes(id),"
+     " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL,"
+     " closure INTEGER"},
+    {"closures",
+     "id INTEGER PRIMARY KEY, older INTEGER NOT NULL REFERENCES nodes(id),"
+     " newer INTEGER NOT NULL REFERENCES nodes(id),"
      " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL,"
      " score ANY NOT NULL, mahalanobis ANY NOT NULL, agreement ANY NOT NULL,"
      " votes INTEGER NOT NULL, state TEXT NOT NULL, reason TEXT NOT NULL"},
@@ -67,13 +68,37 @@ constexpr const char* kFloorsOfVersion1 =
     "id INTEGER PRIMARY KEY, label TEXT NOT NULL, elevation ANY NOT NULL,"
     " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL";
 
+// Version 2 had the points of a node's scan beside the scans that were kept.
+constexpr const char* kNodesOfVersion2 =
+    "id INTEGER PRIMARY KEY, stamp ANY NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
+    " odom_x ANY NOT NULL, odom_y ANY NOT NULL, odom_theta ANY NOT NULL,"
+    " world_x ANY NOT NULL, world_y ANY NOT NULL, world_theta ANY NOT NULL,"
+    " point_count INTEGER, points BLOB, points_checksum INTEGER";
+
+// Version 2 knew closures from the newer node to the older, and edges did not say of which they
+// are.
+constexpr const char* kEdgesOfVersion2 =
+    "id INTEGER PRIMARY KEY, from_node INTEGER NOT NULL REFERENCES nodes(id),"
+    " to_node INTEGER NOT NULL REFERENCES nodes(id), kind TEXT NOT NULL,"
+    " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL";
+constexpr Table kAttemptsOfVersion2 = {
+    "attempts",
+    "id INTEGER PRIMARY KEY, a INTEGER NOT NULL REFERENCES nodes(id),"
+    " b INTEGER NOT NULL REFERENCES nodes(id),"
+    " x ANY NOT NULL, y ANY NOT NULL, theta ANY NOT NULL, covariance BLOB NOT NULL,"
+    " score ANY NOT NULL, mahalanobis ANY NOT NULL, agreement ANY NOT NULL,"
+    " votes INTEGER NOT NULL, state TEXT NOT NULL, reason TEXT NOT NULL"};
+
 std::vector<Table> TablesOf(std::int64_t version) {
   std::vector<Table> tables;
-  for (const Table& table : kTables) {
+  for (Table table : kTables) {
     const std::string_view name = table.name;
-    if (version == 1 && name == "drives") continue;
-    tables.push_back(version == 1 && name == "floors" ? Table{table.name, kFloorsOfVersion1}
-                                                      : table);
+    if (version <= 1 && name == "drives") continue;
+    if (version <= 1 && name == "floors") table.columns = kFloorsOfVersion1;
+    if (version <= 2 && name == "nodes") table.columns = kNodesOfVersion2;
+    if (version <= 2 && name == "edges") table.columns = kEdgesOfVersion2;
+    if (version <= 2 && name == "closures") table = kAttemptsOfVersion2;
+    tables.push_back(table);
   }
   return tables;
 }
@@ -193,7 +218,8 @@ void CheckSeal(Database& database, std::int64_t version) {
 
 // The columns are added where the newest version has them: rows are read by place.
 void Upgrade(Database& database, std::int64_t version) {
-  if (version >= kMapVersion) return;
+  if (version <= 2) database.Run("ALTER TABLE edges ADD COLUMN closure INTEGER");
+  if (version >= 2) return;
   database.Run("ALTER TABLE floors ADD COLUMN label_given INTEGER NOT NULL DEFAULT 0");
   for (const Table& table : kTables) {
     if (std::string_view(table.name) == "drives") database.Run(CreateStatement(table));

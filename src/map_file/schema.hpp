@@ -10,7 +10,7 @@
 namespace masked_mapper {
 
 constexpr std::int64_t kMapApplicationId = 0x4d6d6170;  // "Mmap"
-constexpr std::int64_t kMapVersion = 2;
+constexpr std::int64_t kMapVersion = 3;
 
 /// Makes the tables of the newest version in an empty database.
 void MakeTables(Database& database);
@@ -22,7 +22,8 @@ void Seal(Database& database);
 /// rows. `version` is the file's, between 1 and kMapVersion.
 void CheckSeal(Database& database, std::int64_t version);
 
-/// Changes the tables of an older version into those of the newest.
+/// Adds to the tables of an older version what the newest has in them. Table `attempts`, which
+/// `closures` stands for since version 3, stays as it is.
 void Upgrade(Database& database, std::int64_t version);
 
 }  // namespace masked_mapper

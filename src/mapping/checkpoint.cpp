@@ -31,9 +31,9 @@ void Serialize(Archive& archive, KeptScan& kept) {
 }
 
 template <class Archive>
-void Serialize(Archive& archive, ClosureAttempt& attempt) {
-  archive(attempt.a, attempt.b, attempt.T_a_b, attempt.score, attempt.mahalanobis,
-          attempt.agreement, attempt.votes, attempt.state, attempt.reason);
+void Serialize(Archive& archive, Closure& closure) {
+  archive(closure.older, closure.newer, closure.T_older_newer, closure.score, closure.mahalanobis,
+          closure.agreement, closure.votes, closure.state, closure.reason);
 }
 
 template <class Archive>
@@ -44,7 +44,12 @@ void Serialize(Archive& archive, Floor& floor) {
 
 template <class Archive>
 void Serialize(Archive& archive, Edge& edge) {
-  archive(edge.from, edge.to, edge.T_from_to, edge.kind);
+  archive(edge.from, edge.to, edge.T_from_to, edge.kind, edge.closure);
+}
+
+template <class Archive>
+void Serialize(Archive& archive, Node& node) {
+  archive(node.stamp, node.floor, node.T_odom_robot, node.T_world_robot, node.scan);
 }
 
 template <class Archive>
@@ -67,19 +72,6 @@ void Serialize(Archive& archive, LogSurvey& survey) {
 
 namespace {
 
-/// A node without its points, which are among the grown parts.
-struct BareNode {
-  double stamp = 0.0;
-  FloorId floor = 0;
-  Pose2 T_odom_robot;
-  Pose2 T_world_robot;
-
-  template <class Archive>
-  void Serialize(Archive& archive) {
-    archive(stamp, floor, T_odom_robot, T_world_robot);
-  }
-};
-
 bool Exists(std::int32_t id, std::size_t count) {
   return id >= 0 && static_cast<std::size_t>(id) < count;
 }
@@ -87,33 +79,21 @@ bool Exists(std::int32_t id, std::size_t count) {
 void WriteGraph(const PoseGraph& graph, StateWriter& writer) {
   std::vector<Floor> floors = graph.floors();
   std::vector<Edge> edges = graph.edges();
-  std::vector<BareNode> nodes;
-  nodes.reserve(graph.nodes().size());
-  for (const Node& node : graph.nodes()) {
-    nodes.push_back({node.stamp, node.floor, node.T_odom_robot, node.T_world_robot});
-  }
+  std::vector<Node> nodes = graph.nodes();
   writer(floors, nodes, edges);
 }
 
 // The graph reads like the drive made it: floors, nodes, edges in order of their ids.
-PoseGraph ReadGraph(const std::vector<ScanPoints::ConstPtr>& points_of_nodes, StateReader& reader) {
+PoseGraph ReadGraph(StateReader& reader) {
   std::vector<Floor> floors;
-  std::vector<BareNode> nodes;
+  std::vector<Node> nodes;
   std::vector<Edge> edges;
   reader(floors, nodes, edges);
-  if (nodes.size() != points_of_nodes.size()) StateReader::Refuse("nodes without their points");
   PoseGraph graph;
   for (Floor& floor : floors) graph.AddFloor(std::move(floor));
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const BareNode& bare = nodes[i];
-    if (!Exists(bare.floor, floors.size())) StateReader::Refuse("a node on no floor");
-    Node node;
-    node.stamp = bare.stamp;
-    node.floor = bare.floor;
-    node.T_odom_robot = bare.T_odom_robot;
-    node.T_world_robot = bare.T_world_robot;
-    node.points_in_robot = points_of_nodes[i];
-    graph.AddNode(std::move(node));
+  for (Node& node : nodes) {
+    if (!Exists(node.floor, floors.size())) StateReader::Refuse("a node on no floor");
+    graph.AddNode(node);
   }
   for (const Edge& edge : edges) {
     if (!Exists(edge.from, nodes.size()) || !Exists(edge.to, nodes.size()) ||
@@ -128,7 +108,7 @@ PoseGraph ReadGraph(const std::vector<ScanPoints::ConstPtr>& points_of_nodes, St
 }
 
 // Ids that the mapper would follow without a look.
-void CheckMap(const MappingResult& map) {
+void CheckMap(const BuildingMap& map) {
   const std::size_t nodes = map.graph.nodes().size();
   for (const TrajectoryPose& pose : map.trajectory) {
     if (!Exists(pose.floor, map.graph.floors().size()) || !Exists(pose.node_before, nodes)) {
@@ -140,9 +120,19 @@ void CheckMap(const MappingResult& map) {
       StateReader::Refuse("a scan without a pose");
     }
   }
-  for (const ClosureAttempt& attempt : map.attempts) {
-    if (!Exists(attempt.a, nodes) || !Exists(attempt.b, nodes)) {
-      StateReader::Refuse("an attempt between nodes that there are not");
+  for (const Node& node : map.graph.nodes()) {
+    if (node.scan != -1 && !Exists(node.scan, map.kept_scans.size())) {
+      StateReader::Refuse("a node of a scan that there is not");
+    }
+  }
+  for (const Closure& closure : map.closures) {
+    if (!Exists(closure.older, nodes) || !Exists(closure.newer, nodes)) {
+      StateReader::Refuse("a closure between nodes that there are not");
+    }
+  }
+  for (const Edge& edge : map.graph.edges()) {
+    if (edge.closure != -1 && !Exists(edge.closure, map.closures.size())) {
+      StateReader::Refuse("an edge of a closure that there is not");
     }
   }
 }
@@ -177,42 +167,6 @@ void AppendScans(const std::string& bytes, GrownParts& parts) {
   while (!reader.IsAtEnd()) reader(parts.kept_scans.emplace_back());
 }
 
-std::string PackPoints(const std::vector<Node>& nodes, std::size_t first) {
-  StateWriter writer;
-  std::vector<float> numbers;
-  for (std::size_t i = first; i < nodes.size(); ++i) {
-    bool has_scan = nodes[i].HasScan();
-    numbers.clear();
-    if (has_scan) {
-      for (const pcl::PointXY& point : *nodes[i].points_in_robot) {
-        numbers.push_back(point.x);
-        numbers.push_back(point.y);
-      }
-    }
-    writer(has_scan, numbers);
-  }
-  return writer.Take();
-}
-
-void AppendPoints(const std::string& bytes, GrownParts& parts) {
-  StateReader reader(bytes);
-  bool has_scan = false;
-  std::vector<float> numbers;
-  while (!reader.IsAtEnd()) {
-    reader(has_scan, numbers);
-    if (numbers.size() % 2 != 0) StateReader::Refuse("half a point");
-    ScanPoints::Ptr points;
-    if (has_scan) points.reset(new ScanPoints);
-    for (std::size_t i = 0; has_scan && i < numbers.size(); i += 2) {
-      pcl::PointXY point;
-      point.x = numbers[i];
-      point.y = numbers[i + 1];
-      points->push_back(point);
-    }
-    parts.points_of_nodes.push_back(points);
-  }
-}
-
 std::string PackSurvey(const LogSurvey& survey) {
   StateWriter writer;
   LogSurvey copy = survey;
@@ -235,7 +189,7 @@ LogSurvey UnpackSurvey(const std::string& bytes) {
 
 template <class Archive>
 void MaskedMapper::SerializeState(Archive& archive) {
-  archive(motion_, result_.attempts, closer_, last_scan_node_, in_transit_, on_stairs_,
+  archive(motion_, result_.closures, closer_, last_scan_node_, in_transit_, on_stairs_,
           travelled_since_kept_m_);
 }
 
@@ -248,7 +202,7 @@ std::string MaskedMapper::SaveState() {
 
 void MaskedMapper::RestoreState(const std::string& bytes, GrownParts parts) {
   StateReader reader(bytes);
-  result_.graph = ReadGraph(parts.points_of_nodes, reader);
+  result_.graph = ReadGraph(reader);
   result_.trajectory = std::move(parts.trajectory);
   result_.kept_scans = std::move(parts.kept_scans);
   SerializeState(reader);
@@ -272,11 +226,10 @@ void MaskedMapper::RememberScan(const LaserScan& scan) {
     made_scan_node =
         made_scan_node || result_.graph.nodes()[static_cast<std::size_t>(node)].HasScan();
   }
-  if (is_first && made_scan_node) mask_->OnNode();
   if (pose.in_transit) return;
   if (before.in_transit || before.floor != pose.floor) mask_->Restart();
   mask_->Observe({scan, pose.T_odom_robot});
-  if (!is_first && made_scan_node) mask_->OnNode();
+  if (made_scan_node) mask_->OnNode();
 }
 
 }  // namespace masked_mapper

@@ -19,7 +19,7 @@ namespace masked_mapper {
 namespace {
 
 /// What was skipped or mended, said once.
-void WarnOfTheLog(const std::string& path, const LogStatistics& log, MappingResult& result) {
+void WarnOfTheLog(const std::string& path, const LogStatistics& log, BuildingMap& result) {
   const auto warn = [&](const std::string& text) { result.warnings.push_back(path + ": " + text); };
   if (log.bad_lines > 0) {
     warn(std::to_string(log.bad_lines) + " bad lines skipped, the first: " + log.first_bad_line);
@@ -78,7 +78,7 @@ class LogDrive {
     }
   }
 
-  MappingResult Map() {
+  BuildingMap Map() {
     progress_.Stage("mapping");
     DriveThrough();
     if (HasUnknownFloors(survey_.floors) && FloorsWereJoined()) {
@@ -87,8 +87,9 @@ class LogDrive {
       if (checkpoints_ != nullptr) checkpoints_->StartOver();
       DriveThrough();
     }
-    MappingResult result = mapper_->Finish();
+    BuildingMap result = mapper_->Finish();
     result.log = log_->Statistics();
+    result.seconds += spent_;
     result.seconds.read += read_seconds_;
     result.motion_source = settled_.motion.source;
     result.drives.emplace_back();
@@ -104,6 +105,7 @@ class LogDrive {
 
  private:
   void Begin() {
+    if (mapper_) spent_ += mapper_->result().seconds;  // what is driven again costs twice
     mapper_.emplace(mask_, settled_, survey_.floors);
     log_ = OpenLog(path_, options_.log);
     observations_ = scans_ = 0;
@@ -183,16 +185,16 @@ class LogDrive {
   std::uint64_t scans_ = 0;
   bool has_saved_ = false;
   double read_seconds_ = 0.0;
+  StageSeconds spent_;  // by mappers before this one
 };
 
 }  // namespace
 
-MappingResult MapLog(const std::string& path, const std::string& mask,
-                     const MappingOptions& options, ProgressSink& progress,
-                     CheckpointStore* checkpoints) {
+BuildingMap MapLog(const std::string& path, const std::string& mask, const MappingOptions& options,
+                   ProgressSink& progress, CheckpointStore* checkpoints) {
   double total_seconds = 0.0;
   std::optional<StageTimer> total_timer(std::in_place, total_seconds);
-  MappingResult result;
+  BuildingMap result;
   try {
     result = LogDrive(path, mask, options, progress, checkpoints).Map();
   } catch (const StateError& error) {

@@ -42,33 +42,36 @@ void MaskedMapper::ObserveScan(const LaserScan& scan) {
     motion_.Observe(scan, interval.in_transit != in_transit_);
   }
   const auto floor = static_cast<FloorId>(interval.level);
-  if (result_.graph.nodes().empty()) {
-    // Node 0 is a scan-matching node at the start (III-B); a drive that starts in transit has none.
+  const bool is_first = result_.graph.nodes().empty();
+  if (is_first) {
     in_transit_ = interval.in_transit;
-    AddNode(scan.stamp, floor, in_transit_ ? nullptr : PointsInRobot(scan), EdgeKind::kOdometry);
   } else {
     ChangeFloor(interval, scan.stamp);
   }
   if (!in_transit_) {
-    {
-      const StageTimer timer(result_.seconds.mask);
-      mask_->Observe({scan, motion_.T_odom_robot()});
-    }
-    const Pose2& T_odom_robot = motion_.T_odom_robot();
-    const auto distance_from = [&](NodeId node) {
-      return Distance(result_.graph.nodes()[static_cast<std::size_t>(node)].T_odom_robot,
-                      T_odom_robot);
-    };
+    const StageTimer timer(result_.seconds.mask);
+    mask_->Observe({scan, motion_.T_odom_robot()});
+  }
+  const Pose2& T_odom_robot = motion_.T_odom_robot();
+  const auto distance_from = [&](NodeId node) {
+    return Distance(result_.graph.node(node).T_odom_robot, T_odom_robot);
+  };
+  std::optional<NodeId> new_scan_node;
+  if (is_first) {
+    // Node 0 is a scan-matching node at the start (III-B); a drive that starts in transit has none.
+    AddNode(scan.stamp, floor, EdgeKind::kOdometry, in_transit_ ? -1 : Keep(scan));
+  } else if (!in_transit_) {
     const auto last_node = static_cast<NodeId>(result_.graph.nodes().size() - 1);
     const bool far_from_scan_node =
         !last_scan_node_ || distance_from(*last_scan_node_) > options_.nodes.min_edge_length_m;
     if (far_from_scan_node && mask_->Fires()) {
-      CloseLoops(AddNode(scan.stamp, floor, PointsInRobot(scan), EdgeKind::kOdometry));
+      new_scan_node = AddNode(scan.stamp, floor, EdgeKind::kOdometry, Keep(scan));
     } else if (distance_from(last_node) > options_.nodes.max_edge_length_m) {
-      AddNode(scan.stamp, floor, nullptr, EdgeKind::kOdometry);
+      AddNode(scan.stamp, floor, EdgeKind::kOdometry);
     }
   }
-  RecordScan(scan, interval);
+  RecordPose(scan, interval);
+  if (new_scan_node) CloseLoops(*new_scan_node);
 }
 
 // Exit on the old floor, entry on the new one, both odometry-only (III-B): what lies between them
@@ -78,7 +81,7 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
   const auto floor = static_cast<FloorId>(interval.level);
   const bool other_floor = floor != old_floor;
   if (!in_transit_ && (interval.in_transit || other_floor)) {
-    AddNode(stamp, old_floor, nullptr, EdgeKind::kOdometry);
+    AddNode(stamp, old_floor, EdgeKind::kOdometry);
     in_transit_ = true;
     // On stairs the scene changes step by step, and its far walls hold the way along a flight; a
     // cab's door opens on another floor at once.
@@ -86,7 +89,7 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
     if (!on_stairs_) motion_.EnterTransit();
   }
   if (in_transit_ && !interval.in_transit) {
-    AddNode(stamp, floor, nullptr, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
+    AddNode(stamp, floor, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
     in_transit_ = false;
     last_scan_node_.reset();
     mask_->Restart();
@@ -108,14 +111,13 @@ UncertainPose2 MaskedMapper::RideInCab(const UncertainPose2& motion) const {
   return ride;
 }
 
-NodeId MaskedMapper::AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot,
-                             EdgeKind kind) {
+NodeId MaskedMapper::AddNode(double stamp, FloorId floor, EdgeKind kind, KeptScanId scan) {
   PoseGraph& graph = result_.graph;
   Node node;
   node.stamp = stamp;
   node.floor = floor;
   node.T_odom_robot = motion_.T_odom_robot();
-  node.points_in_robot = std::move(points_in_robot);
+  node.scan = scan;
   const bool has_scan = node.HasScan();
   const bool is_first = graph.nodes().empty();
   if (!is_first) {
@@ -146,12 +148,20 @@ void MaskedMapper::CloseLoops(NodeId new_node) {
   closer_.Close(new_node, candidates);
 }
 
-void MaskedMapper::RecordScan(const LaserScan& scan, const FloorInterval& interval) {
+// Of the pose that is recorded next.
+KeptScanId MaskedMapper::Keep(const LaserScan& scan) {
+  result_.kept_scans.push_back({result_.trajectory.size(), scan});
+  return static_cast<KeptScanId>(result_.kept_scans.size() - 1);
+}
+
+void MaskedMapper::RecordPose(const LaserScan& scan, const FloorInterval& interval) {
   const Pose2& T_odom_robot = motion_.T_odom_robot();
-  const bool is_first = result_.trajectory.empty();
-  if (!is_first) {
+  if (!result_.trajectory.empty()) {
     travelled_since_kept_m_ += Distance(result_.trajectory.back().T_odom_robot, T_odom_robot);
   }
+  // Beside the scans of nodes, those that render the map, thinned by travel and turn.
+  if (!IsNextKept() && IsDueToBeKept(interval)) Keep(scan);
+  if (IsNextKept()) travelled_since_kept_m_ = 0.0;
   TrajectoryPose pose;
   pose.stamp = scan.stamp;
   pose.node_before = static_cast<NodeId>(result_.graph.nodes().size() - 1);
@@ -159,21 +169,25 @@ void MaskedMapper::RecordScan(const LaserScan& scan, const FloorInterval& interv
   pose.in_transit = interval.in_transit;
   pose.T_odom_robot = T_odom_robot;
   result_.trajectory.push_back(pose);
-  if (interval.in_transit) return;
-  const bool turned =
-      !result_.kept_scans.empty() &&
-      std::abs(WrapAngle(
-          T_odom_robot.theta -
-          result_.trajectory[result_.kept_scans.back().trajectory_index].T_odom_robot.theta)) >=
-          DegToRad(options_.nodes.kept_scan_angle_deg);
-  if (result_.kept_scans.empty() || turned ||
-      travelled_since_kept_m_ >= options_.nodes.kept_scan_distance_m) {
-    result_.kept_scans.push_back({result_.trajectory.size() - 1, scan});
-    travelled_since_kept_m_ = 0.0;
-  }
 }
 
-MappingResult MaskedMapper::Finish() {
+// Whether the scan of the pose that is recorded next is kept: a node's is.
+bool MaskedMapper::IsNextKept() const {
+  return !result_.kept_scans.empty() &&
+         result_.kept_scans.back().trajectory_index == result_.trajectory.size();
+}
+
+bool MaskedMapper::IsDueToBeKept(const FloorInterval& interval) const {
+  if (interval.in_transit) return false;
+  if (result_.kept_scans.empty()) return true;
+  const std::size_t last = result_.kept_scans.back().trajectory_index;
+  const double turned =
+      WrapAngle(motion_.T_odom_robot().theta - result_.trajectory[last].T_odom_robot.theta);
+  return std::abs(turned) >= DegToRad(options_.nodes.kept_scan_angle_deg) ||
+         travelled_since_kept_m_ >= options_.nodes.kept_scan_distance_m;
+}
+
+BuildingMap MaskedMapper::Finish() {
   closer_.Finish();
   BendTrajectory(result_.graph, result_.trajectory);
   return std::move(result_);

@@ -84,12 +84,24 @@ bool SayTheSame(const PoseGraph& graph, const Edge& one, const Edge& other) {
          std::abs(WrapAngle(T_by_other.theta - one.T_from_to.mean.theta)) < DegToRad(kSameDeg);
 }
 
+// The way of the motion path to each node, counted on from drive to drive.
+std::vector<double> Travelled(const PoseGraph& graph) {
+  std::vector<double> travelled(graph.nodes().size(), 0.0);
+  for (std::size_t i = 1; i < travelled.size(); ++i) {
+    travelled[i] = travelled[i - 1] +
+                   Distance(graph.nodes()[i - 1].T_odom_robot, graph.nodes()[i].T_odom_robot);
+  }
+  return travelled;
+}
+
 // Closures between the same stretches of the drive that say the same stand and fall together
 // (ours): the votes let wrong ones in by groups, and where such a group outnumbers the right
 // closures about it, those would be given up one by one. Returns for every edge the first of its
 // group; an edge that is no closure is a group of its own.
 std::vector<std::size_t> Groups(const PoseGraph& graph, const WeightedEdges& edges) {
-  constexpr NodeId kSameStretch = 6;  // nodes along the drive
+  constexpr double kSameStretch = 15.0;  // m along the drive, however dense its nodes
+  const std::vector<double> travelled = Travelled(graph);
+  const auto at = [&](NodeId node) { return travelled[static_cast<std::size_t>(node)]; };
   std::vector<std::size_t> group(edges.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
   const auto root = [&](std::size_t i) {
@@ -101,14 +113,15 @@ std::vector<std::size_t> Groups(const PoseGraph& graph, const WeightedEdges& edg
     if (edges.edge(i).kind == EdgeKind::kClosure) closures.push_back(i);
   }
   std::stable_sort(closures.begin(), closures.end(), [&](std::size_t i, std::size_t j) {
-    return edges.edge(i).from < edges.edge(j).from;
+    return edges.edge(i).to < edges.edge(j).to;
   });
   for (std::size_t i = 0; i < closures.size(); ++i) {
     for (std::size_t j = i; j-- > 0;) {
       const Edge& one = edges.edge(closures[i]);
       const Edge& other = edges.edge(closures[j]);
-      if (one.from - other.from > kSameStretch) break;
-      if (std::abs(one.to - other.to) > kSameStretch || !SayTheSame(graph, one, other)) continue;
+      if (at(one.to) - at(other.to) > kSameStretch) break;
+      if (std::abs(at(one.from) - at(other.from)) > kSameStretch) continue;
+      if (!SayTheSame(graph, one, other)) continue;
       const std::size_t root_one = root(closures[i]);
       const std::size_t root_other = root(closures[j]);
       group[std::max(root_one, root_other)] = std::min(root_one, root_other);

@@ -4,7 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstdlib>
+
+#include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kFloor = 1e-5;  // m and rad, see the header
 
 Eigen::Matrix3d SqrtInformation(const Eigen::Matrix3d& covariance) {
-  if (!covariance.allFinite()) std::abort();
+  Check(covariance.allFinite(), "a covariance is finite");
   const Eigen::Matrix3d symmetric = 0.5 * (covariance + covariance.transpose());
   Eigen::LLT<Eigen::Matrix3d> factor(symmetric);
   const bool firm = factor.info() == Eigen::Success &&
@@ -20,7 +21,8 @@ Eigen::Matrix3d SqrtInformation(const Eigen::Matrix3d& covariance) {
   if (!firm) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(symmetric);
     // Rounding may take a zero eigenvalue a little below zero; more than that is no covariance.
-    if (eigen.eigenvalues()(0) < -1e-9 * (1.0 + eigen.eigenvalues()(2))) std::abort();
+    Check(eigen.eigenvalues()(0) >= -1e-9 * (1.0 + eigen.eigenvalues()(2)),
+          "a covariance is positive semi-definite");
     const Eigen::Vector3d floored = eigen.eigenvalues().cwiseMax(kFloor * kFloor);
     factor.compute(eigen.eigenvectors() * floored.asDiagonal() * eigen.eigenvectors().transpose());
     if (factor.info() != Eigen::Success) {  // the smallest drowned in the rounding of the largest

@@ -4,12 +4,12 @@
 // node.
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
 
-#include <cstdlib>
 #include <functional>
 #include <queue>
 #include <utility>
 
 #include "masked_mapper/pose_graph/composed_trace.hpp"
+#include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -26,7 +26,8 @@ struct Reached {
 
 std::vector<ProjectedNode> DijkstraProjection(const PoseGraph& graph, NodeId source,
                                               const ProjectionLimits& limits) {
-  if (source < 0 || static_cast<std::size_t>(source) >= graph.nodes().size()) std::abort();
+  Check(source >= 0 && static_cast<std::size_t>(source) < graph.nodes().size(),
+        "the source is a node of the graph");
   std::vector<Reached> reached(graph.nodes().size());
   std::vector<ProjectedNode> settled;
   using Entry = std::pair<double, NodeId>;

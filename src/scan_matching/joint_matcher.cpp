@@ -2,17 +2,15 @@
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <list>
 #include <map>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "masked_mapper/scan_matching/for_each.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -25,31 +23,6 @@ std::int32_t HalfWindow(double variance, double sigmas, double smallest, double 
   const double wanted = sigmas * std::sqrt(variance);
   const double half = wanted < largest ? std::max(wanted, smallest) : largest;
   return static_cast<std::int32_t>(std::ceil(half / step - 1e-9));
-}
-
-// Calls work(0) ... work(count - 1), each once, on up to `threads` threads.
-void ForEach(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-  const std::size_t workers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-  if (workers <= 1) {
-    for (std::size_t i = 0; i < count; ++i) work(i);
-    return;
-  }
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> errors(workers);
-  const auto run = [&](std::size_t worker) {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      errors[worker] = std::current_exception();
-    }
-  };
-  std::vector<std::thread> pool;
-  for (std::size_t worker = 1; worker < workers; ++worker) pool.emplace_back(run, worker);
-  run(0);
-  for (std::thread& thread : pool) thread.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
 }
 
 // The tables of the scans matched last, within a budget of memory.

@@ -6,6 +6,16 @@
 #include "masked_mapper/sensor/beam_sweep.hpp"
 
 namespace masked_mapper {
+namespace {
+
+pcl::PointXY AsPoint(const Eigen::Vector2d& point) {
+  pcl::PointXY plain;
+  plain.x = static_cast<float>(point.x());
+  plain.y = static_cast<float>(point.y());
+  return plain;
+}
+
+}  // namespace
 
 bool LaserScan::IsFullCircle() const {
   if (ranges.size() < 3) return false;
@@ -22,12 +32,29 @@ ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan) {
     if (!scan.IsHit(beam)) continue;
     const Eigen::Vector2d point_in_robot =
         scan.T_robot_laser.Translation() + scan.ranges[beam] * direction.Current();
-    pcl::PointXY point;
-    point.x = static_cast<float>(point_in_robot.x());
-    point.y = static_cast<float>(point_in_robot.y());
-    points->push_back(point);
+    points->push_back(AsPoint(point_in_robot));
   }
   return points;
+}
+
+void AppendTransformed(const ScanPoints& points_in_b, const Pose2& T_a_b, double max_range_m,
+                       ScanPoints& points_in_a) {
+  for (const pcl::PointXY& point : points_in_b) {
+    const Eigen::Vector2d in_b(point.x, point.y);
+    if (in_b.norm() <= max_range_m) points_in_a.push_back(AsPoint(T_a_b * in_b));
+  }
+}
+
+ScanPoints::Ptr Transformed(const ScanPoints& points_in_b, const Pose2& T_a_b) {
+  ScanPoints::Ptr points_in_a(new ScanPoints);
+  AppendTransformed(points_in_b, T_a_b, std::numeric_limits<double>::infinity(), *points_in_a);
+  return points_in_a;
+}
+
+ScanPoints::Ptr AsScanPoints(const std::vector<Eigen::Vector2d>& points) {
+  ScanPoints::Ptr cloud(new ScanPoints);
+  for (const Eigen::Vector2d& point : points) cloud->push_back(AsPoint(point));
+  return cloud;
 }
 
 }  // namespace masked_mapper

@@ -174,13 +174,13 @@ TEST(MapCommand, ResumeWithoutAnythingToResumeStartsAfresh) {
 TEST(MapCommand, SettingsWinOverTheConfigurationAndTheConfigurationOverDefaults) {
   const ScratchFolder folder;
   WriteText(folder / "ring.log", Joined(Ring()));
-  WriteText(folder / "my.yaml", "matcher: {min_score: 0.5, min_window_m: 0.4}\n");
+  WriteText(folder / "my.yaml", "matcher: {min_score: 0.5, max_window_m: 5.5}\n");
   const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--set",
                               "matcher.min_score=0.6", "--config", folder / "my.yaml"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto summary = nlohmann::json::parse(ReadText(folder / "out/summary.json"));
   EXPECT_EQ(summary.at("options").at("matcher.min_score"), 0.6);
-  EXPECT_EQ(summary.at("options").at("matcher.min_window_m"), 0.4);
+  EXPECT_EQ(summary.at("options").at("matcher.max_window_m"), 5.5);
 }
 
 TEST(MapCommand, AnInterruptLeavesNothing) {

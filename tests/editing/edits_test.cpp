@@ -57,7 +57,7 @@ class EditsTest : public testing::Test {
   RingDrive drive_;
   FloorTimeline floors_;
   LoopClosureOptions options_;
-  MappingResult map_;
+  BuildingMap map_;
 };
 
 TEST_F(EditsTest, AClosureWithItsTransformMendsTheMap) {
@@ -66,8 +66,8 @@ TEST_F(EditsTest, AClosureWithItsTransformMendsTheMap) {
   Edit("- add_closure: {" + Stamps() + ", transform: " + TruePose() + "}\n");
   EXPECT_LT(LastError(), 0.2) << "m";
   EXPECT_EQ(map_.graph.edges().back().kind, EdgeKind::kClosure);
-  EXPECT_EQ(map_.attempts.back().reason, "added by hand");
-  EXPECT_GT(map_.attempts.back().a, map_.attempts.back().b);
+  EXPECT_EQ(map_.closures.back().reason, ClosureReason::kAddedByHand);
+  EXPECT_GT(map_.closures.back().newer, map_.closures.back().older);
   EXPECT_EQ(map_.warnings.back().rfind("edited: a closure between", 0), 0U);
 }
 
@@ -76,19 +76,19 @@ TEST_F(EditsTest, AClosureIsMatchedFromAGuess) {
   Edit("- add_closure: {" + Stamps() + ", guess: [" + std::to_string(T.x + 0.4) + ", " +
        std::to_string(T.y - 0.3) + ", " + std::to_string(RadToDeg(T.theta) + 4.0) + "]}\n");
   EXPECT_LT(LastError(), 0.25) << "m";
-  EXPECT_GT(map_.attempts.back().score, options_.matcher.min_score);
+  EXPECT_GT(map_.closures.back().score, options_.matcher.min_score);
 }
 
 TEST_F(EditsTest, AForbiddenClosureIsOut) {
-  const MappingResult before = map_;
+  const BuildingMap before = map_;
   Edit("- add_closure: {" + Stamps() + ", transform: [1, 2, 30]}\n");
   EXPECT_FALSE(SameMap(before, map_));
-  const ClosureAttempt& added = map_.attempts.back();
+  const Closure added = map_.closures.back();
   const auto stamp = [&](NodeId node) {
     return std::to_string(map_.graph.nodes()[static_cast<std::size_t>(node)].stamp);
   };
-  Edit("- forbid_closure: {from: " + stamp(added.b) + ", to: " + stamp(added.a) + "}\n");
-  EXPECT_EQ(map_.attempts.back().state, ClosureState::kAuditedOut);
+  Edit("- forbid_closure: {from: " + stamp(added.older) + ", to: " + stamp(added.newer) + "}\n");
+  EXPECT_EQ(map_.closures.back().state, ClosureState::kAuditedOut);
   for (std::size_t i = 0; i < map_.trajectory.size(); ++i) {
     EXPECT_LT(Distance(map_.trajectory[i].T_world_robot, before.trajectory[i].T_world_robot), 1e-3);
   }
@@ -109,14 +109,14 @@ TEST_F(EditsTest, FloorsAreNamedPinnedAndJoined) {
 }
 
 TEST_F(EditsTest, NoEditsChangeNothing) {
-  const MappingResult before = map_;
+  const BuildingMap before = map_;
   Edit("");
   Edit("# nothing yet\n");
   EXPECT_TRUE(SameMap(before, map_));
 }
 
 TEST_F(EditsTest, MistakesNameFileAndLineAndChangeNothing) {
-  const MappingResult before = map_;
+  const BuildingMap before = map_;
   const std::string good = "- name_floor: {floor: up, name: attic}\n";
   for (const auto& [text, said] : std::vector<std::pair<std::string, std::string>>{
            {"- ad_closure: {from: 1, to: 2}\n", "did you mean `add_closure`"},

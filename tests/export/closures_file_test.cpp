@@ -8,10 +8,10 @@
 namespace masked_mapper {
 namespace {
 
-TEST(ClosuresFile, OneLinePerAttempt) {
-  const MappingResult map = SampleMap();
+TEST(ClosuresFile, OneLinePerClosure) {
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
-  WriteClosures(map.attempts, map.graph, folder / "c.csv");
+  WriteClosures(map.closures, map.graph, folder / "c.csv");
   const auto lines = Split(ReadBytes(folder / "c.csv"), '\n');
   ASSERT_EQ(lines.size(), 6U);
   EXPECT_EQ(lines[0], "t_a,t_b,floor,dx,dy,dtheta,score,maha,votes,state,reason");
@@ -29,20 +29,23 @@ TEST(ClosuresFile, OneLinePerAttempt) {
   EXPECT_EQ(fields[7], "1.500000");
   EXPECT_EQ(fields[8], "6");
   EXPECT_EQ(fields[9], "hypothesis");
-  EXPECT_EQ(fields[10], "2 of 6 votes");
+  EXPECT_EQ(fields[10], "too few votes");
   EXPECT_EQ(Split(lines[1], ',')[9], "validated");
 }
 
-TEST(ClosuresFile, ReasonsWithCommasAndQuotesStayOneField) {
-  const MappingResult map = SampleMap();
+TEST(ClosuresFile, AFloorsNameWithACommaStaysOneField) {
+  BuildingMap map = SampleMap();
+  std::vector<Floor> floors = map.graph.floors();
+  floors[0].label = "said \"no\", twice";
+  std::vector<FloorId> floor_of_node;
+  for (const Node& node : map.graph.nodes()) floor_of_node.push_back(node.floor);
+  map.graph.Refloor(floors, floor_of_node);
   const TestFolder folder;
-  WriteClosures(map.attempts, map.graph, folder / "c.csv");
-  const std::string text = ReadBytes(folder / "c.csv");
-  EXPECT_NE(text.find(",rejected_score,\"score, below 42.5 %\"\n"), std::string::npos);
-  EXPECT_NE(text.find(",audited_out,\"said \"\"no\"\"\"\n"), std::string::npos);
+  WriteClosures(map.closures, map.graph, folder / "c.csv");
+  EXPECT_NE(ReadBytes(folder / "c.csv").find(",\"said \"\"no\"\", twice\","), std::string::npos);
 }
 
-TEST(ClosuresFile, NoAttemptLeavesTheHeader) {
+TEST(ClosuresFile, NoClosureLeavesTheHeader) {
   const TestFolder folder;
   WriteClosures({}, {}, folder / "c.csv");
   EXPECT_EQ(Split(ReadBytes(folder / "c.csv"), '\n').size(), 1U);

@@ -54,7 +54,7 @@ G2oGraph ReadG2o(const std::filesystem::path& path) {
 }
 
 TEST(G2oFile, HoldsAllNodesAndEdges) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
   WriteG2o(map.graph, folder / "g.g2o");
   const G2oGraph read = ReadG2o(folder / "g.g2o");
@@ -70,7 +70,7 @@ TEST(G2oFile, HoldsAllNodesAndEdges) {
 
 // The same error counts as much in g2o's terms as in ours.
 TEST(G2oFile, InformationIsInTheFrameOfTheFarEnd) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
   WriteG2o(map.graph, folder / "g.g2o");
   const G2oGraph read = ReadG2o(folder / "g.g2o");
@@ -86,7 +86,7 @@ TEST(G2oFile, InformationIsInTheFrameOfTheFarEnd) {
 }
 
 TEST(G2oFile, OneFloorKeepsItsIds) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
   WriteG2o(map.graph, 0, folder / "0.g2o");
   WriteG2o(map.graph, 1, folder / "1.g2o");
@@ -100,7 +100,7 @@ TEST(G2oFile, OneFloorKeepsItsIds) {
 }
 
 TEST(G2oFile, SingularCovarianceStaysFinite) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   map.graph.AddEdge({0, 2, {{1.0, 2.0, 0.5}, Eigen::Matrix3d::Zero()}, EdgeKind::kOdometry});
   const TestFolder folder;
   WriteG2o(map.graph, folder / "g.g2o");

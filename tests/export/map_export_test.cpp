@@ -41,7 +41,7 @@ TEST(MapExport, SameBytesAtAnyNumberOfThreads) {
 }
 
 TEST(MapExport, ScansInTransitAreNotDrawn) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   for (TrajectoryPose& pose : map.trajectory) {
     if (pose.in_transit) pose.T_world_robot = {100.0, 100.0, 0.0};
   }
@@ -52,7 +52,7 @@ TEST(MapExport, ScansInTransitAreNotDrawn) {
 }
 
 TEST(MapExport, FloorWithoutScansHasItsFiles) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   map.graph.AddFloor({"attic", 7.0, 0.1, true});
   const TestFolder folder;
   const Summary summary = WriteMap(map, {}, {}, folder.path());
@@ -69,7 +69,7 @@ TEST(MapExport, EmptyMapIsWritten) {
 }
 
 TEST(MapExport, LabelThatLeavesTheFolderIsRefused) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   map.graph.AddFloor({"../outside"});
   const TestFolder folder;
   EXPECT_THROW(WriteMap(map, {}, {}, folder.path()), InputError);
@@ -78,7 +78,7 @@ TEST(MapExport, LabelThatLeavesTheFolderIsRefused) {
 
 TEST(MapExport, NamesWhatItWrites) {
   const TestFolder folder;
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   map.drives.resize(2);
   map.drives[1].first_pose = 3;
   map.drives[1].first_node = 1;
@@ -90,7 +90,7 @@ TEST(MapExport, NamesWhatItWrites) {
 }
 
 /// What is said of the files that could not be written.
-ExportError FailureOf(const MappingResult& map, const ExportOptions& options,
+ExportError FailureOf(const BuildingMap& map, const ExportOptions& options,
                       const std::filesystem::path& folder) {
   try {
     WriteMap(map, {}, options, folder);
@@ -103,7 +103,7 @@ ExportError FailureOf(const MappingResult& map, const ExportOptions& options,
 
 // 32768 cells to each side is all that an octree has.
 TEST(MapExport, AnOctreeThatIsTooLargeHoldsUpNothingElse) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   for (TrajectoryPose& pose : map.trajectory) pose.T_world_robot.x += 2000.0;
   const TestFolder folder;
   const ExportError error = FailureOf(map, {}, folder.path());
@@ -119,7 +119,7 @@ TEST(MapExport, AnOctreeThatIsTooLargeHoldsUpNothingElse) {
 }
 
 TEST(MapExport, AFloorThatIsTooLargeIsNotDrawnAndTheBuildingIsNoPartOfItself) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   // Two scans so far from each other that no grid holds both.
   for (const KeptScan& kept : {map.kept_scans.front(), map.kept_scans.back()}) {
     TrajectoryPose& pose = map.trajectory[kept.trajectory_index];

@@ -15,12 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string PageOf(const MappingResult& map, const RunDescription& run) {
+std::string PageOf(const BuildingMap& map, const RunDescription& run) {
   const std::vector<OccupancyGrid> grids = RenderFloors(map, {});
   return ReportPage(ReportData(map, grids, 30.0), Summarise(map, run, grids));
 }
 
-Json DataOf(const MappingResult& map) {
+Json DataOf(const BuildingMap& map) {
   return Json::parse(ReportData(map, RenderFloors(map, {}), 30.0));
 }
 
@@ -71,10 +71,9 @@ TEST(Report, IsOnePageThatAsksForNothing) {
 }
 
 TEST(Report, NastyTextsStayTexts) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   const std::string nasty = "</script><script>alert(1)</script><!-- <b>\xE2\x80\xA8 $& \\ \" '";
   map.warnings = {nasty, "caf\xe9 is no UTF-8"};
-  map.attempts[1].reason = nasty + "]]>";
   const std::string page =
       PageOf(map, {"logs/" + nasty, nasty, {{"key", nasty}, {"@REPORT_DATA@", true}}});
   const Json data = Json::parse(EmbeddedData(page));
@@ -82,14 +81,13 @@ TEST(Report, NastyTextsStayTexts) {
   EXPECT_EQ(data["summary"]["log"], "logs/" + nasty);
   EXPECT_EQ(data["summary"]["mask"], nasty);
   EXPECT_EQ(data["summary"]["options"]["key"], nasty);
-  EXPECT_EQ(data["map"]["attempts"]["reasons"][1], nasty + "]]>");
   EXPECT_EQ(EmbeddedData(page).find('<'), std::string::npos);
   EXPECT_EQ(CountOf(page, "</script>"),
             CountOf(PageOf(SampleMap(), {"a.log", "openings", {}}), "</script>"));
 }
 
 TEST(Report, OnlySecondsAndMemoryDependOnTheRun) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const std::vector<OccupancyGrid> grids = RenderFloors(map, {});
   GridOptions two_threads;
   two_threads.threads = 2;
@@ -111,7 +109,7 @@ TEST(Report, OnlySecondsAndMemoryDependOnTheRun) {
 }
 
 TEST(Report, WallsAreWhereTheGridHasThem) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const std::vector<OccupancyGrid> grids = RenderFloors(map, {});
   const Json floors = DataOf(map)["floors"];
   ASSERT_EQ(floors.size(), 2U);
@@ -131,7 +129,7 @@ TEST(Report, WallsAreWhereTheGridHasThem) {
 }
 
 TEST(Report, FreeSpaceIsTheGrids) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const OccupancyGrid grid = RenderFloors(map, {})[0];
   const Json free = DataOf(map)["floors"][0]["free"];
   ASSERT_EQ(free["width"], grid.width);
@@ -150,7 +148,7 @@ TEST(Report, FreeSpaceIsTheGrids) {
 
 /// The motion path has an origin of its own; drawn, both maps start at one place.
 TEST(Report, BeforeStartsWhereAfterDoes) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   const Json plain = DataOf(map)["nodes"];
   const Pose2 T_new_old{40.0, -7.0, 2.0};
   PoseGraph moved;
@@ -192,13 +190,13 @@ TEST(Report, ScansLieOnTheWalls) {
 }
 
 TEST(Report, ErrorOfAClosureIsWhatTheMapLeaves) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   // The map moves the newer node 0.3 m ahead and turns it by 2 degrees.
-  const Pose2 match = map.attempts[0].T_a_b.mean;
+  const Pose2 match = Inverse(map.closures[0].T_older_newer.mean);
   const Pose2 T_world_b = map.graph.nodes()[0].T_world_robot;
   map.graph.SetPose(1, T_world_b * Inverse(match * Pose2{0.3, 0.0, DegToRad(2.0)}));
   const auto quality = Column<float>(DataOf(map)["attempts"], "quality_f32");
-  ASSERT_EQ(quality.size(), 5 * map.attempts.size());
+  ASSERT_EQ(quality.size(), 5 * map.closures.size());
   EXPECT_NEAR(quality[0], 0.625, 1e-6);
   EXPECT_NEAR(quality[3], 0.3, 1e-5);
   EXPECT_NEAR(RadToDeg(static_cast<double>(quality[4])), 2.0, 1e-4);

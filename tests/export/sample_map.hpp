@@ -76,8 +76,8 @@ inline LaserScan ScanOfRoom(double stamp) {
 }
 
 /// Ground floor "0", then floor "-1" below it; one ride between them, one closure above.
-inline MappingResult SampleMap() {
-  MappingResult map;
+inline BuildingMap SampleMap() {
+  BuildingMap map;
   map.graph.AddFloor({"0", 0.0, 0.0, true});
   map.graph.AddFloor({"-1", -3.5, 0.2, false});
   const Pose2 poses[] = {{0.0, 0.0, 0.0}, {2.0, 0.1, 3.0}, {0.5, 0.5, -3.0}, {0.5, 0.5, 1.0}};
@@ -87,7 +87,7 @@ inline MappingResult SampleMap() {
     node.floor = i == 3 ? 1 : 0;
     node.T_odom_robot = poses[i];
     node.T_world_robot = poses[i];
-    if (i != 2) node.points_in_robot = PointsInRobot(ScanOfRoom(node.stamp));
+    if (i != 2) node.scan = 2 * i;
     map.graph.AddNode(node);
   }
   Eigen::Matrix3d covariance = Eigen::Vector3d(0.04, 0.01, 0.0025).asDiagonal();
@@ -98,7 +98,7 @@ inline MappingResult SampleMap() {
                        {Between(poses[i], poses[i + 1]), covariance},
                        i == 2 ? EdgeKind::kFloorChange : EdgeKind::kOdometry});
   }
-  map.graph.AddEdge({1, 0, {Between(poses[1], poses[0]), covariance}, EdgeKind::kClosure});
+  map.graph.AddEdge({0, 1, {Between(poses[0], poses[1]), covariance}, EdgeKind::kClosure, 0});
 
   for (int i = 0; i < 8; ++i) {
     TrajectoryPose pose;
@@ -111,15 +111,15 @@ inline MappingResult SampleMap() {
     map.trajectory.push_back(pose);
     map.kept_scans.push_back({static_cast<std::size_t>(i), ScanOfRoom(pose.stamp)});
   }
-  const auto attempt = [&](ClosureState state, const std::string& reason) {
-    map.attempts.push_back(
-        {1, 0, {Between(poses[1], poses[0]), covariance}, 0.625, 1.5, 0.0, 6, state, reason});
+  const auto closure = [&](ClosureState state, ClosureReason reason) {
+    map.closures.push_back(
+        {0, 1, {Between(poses[0], poses[1]), covariance}, state, reason, 0.625, 1.5, 0.0, 6});
   };
-  attempt(ClosureState::kValidated, "");
-  attempt(ClosureState::kHypothesis, "2 of 6 votes");
-  attempt(ClosureState::kRejectedScore, "score, below 42.5 %");
-  attempt(ClosureState::kRejectedScore, "score, below 42.5 %");
-  attempt(ClosureState::kAuditedOut, "said \"no\"");
+  closure(ClosureState::kValidated, ClosureReason::kEnoughVotes);
+  closure(ClosureState::kHypothesis, ClosureReason::kTooFewVotes);
+  closure(ClosureState::kRejectedScore, ClosureReason::kBelowMinScore);
+  closure(ClosureState::kRejectedScore, ClosureReason::kBelowMinScore);
+  closure(ClosureState::kAuditedOut, ClosureReason::kDisagreesWithTheMap);
   map.log.scans = 8;
   map.log.odometry = 20;
   map.log.pressure = 3;

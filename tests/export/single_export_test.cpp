@@ -11,7 +11,7 @@ namespace {
 
 TEST(SingleExport, SameBytesAsInTheFolderOfTheMap) {
   const TestFolder folder;
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   WriteMap(map, {}, {}, folder.path());
   std::filesystem::create_directory(folder / "single");
   const struct {
@@ -47,7 +47,7 @@ TEST(SingleExport, AFloorHasItsPosesAlone) {
 
 TEST(SingleExport, HeightsLeaveOutFloors) {
   const TestFolder folder;
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   WriteSingleExport(map, {}, {ExportFormat::kPcd, {}, {-1.0, 9.0}}, folder / "upper.pcd");
   WriteSingleExport(map, {}, {ExportFormat::kPcd, 0, {}}, folder / "ground.pcd");
   EXPECT_EQ(ReadBytes(folder / "upper.pcd"), ReadBytes(folder / "ground.pcd"));

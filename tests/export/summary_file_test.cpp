@@ -75,7 +75,7 @@ TEST(SummaryFile, CountsAddUp) {
 }
 
 TEST(SummaryFile, TotalIsTheSumOfTheStagesUnlessMeasured) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   EXPECT_EQ(Summarise(map, {}, {{}, {}}).seconds.total, 1.25);
   map.seconds = {};
   map.seconds.read = 0.5;
@@ -84,7 +84,7 @@ TEST(SummaryFile, TotalIsTheSumOfTheStagesUnlessMeasured) {
 }
 
 TEST(SummaryFile, SaysWhichMotionWasUsed) {
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   map.motion_source = MotionSource::kScans;
   EXPECT_EQ(Written(Summarise(map, {}, {{}, {}}))["motion_source"], "scans");
 }

@@ -30,7 +30,7 @@ void ExpectPose(const std::vector<double>& row, double stamp, const Pose2& pose,
 }
 
 TEST(TrajectoryFile, OneLinePerScanAtItsFloor) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
   WriteTrajectory(map.trajectory, map.graph.floors(), folder / "t.tum");
   const auto rows = ReadTum(folder / "t.tum");
@@ -42,7 +42,7 @@ TEST(TrajectoryFile, OneLinePerScanAtItsFloor) {
 }
 
 TEST(TrajectoryFile, OneLinePerNode) {
-  const MappingResult map = SampleMap();
+  const BuildingMap map = SampleMap();
   const TestFolder folder;
   WriteNodes(map.graph, folder / "n.tum");
   const auto rows = ReadTum(folder / "n.tum");

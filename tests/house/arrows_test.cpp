@@ -101,6 +101,25 @@ TEST(Arrows, IncludesFollowTheLinkLists) {
   }
 }
 
+TEST(Arrows, EveryLinkHasAnInclude) {
+  const auto rooms = ReadRooms();
+  std::map<std::string, std::set<std::string>> included;
+  for (const fs::path& file : CppFiles({"include/masked_mapper", "src"})) {
+    for (const std::string& include : IncludesOf(file)) {
+      const std::string prefix = "masked_mapper/";
+      if (include.rfind(prefix, 0) != 0) continue;
+      const std::size_t end = include.find('/', prefix.size());
+      included[RoomOf(file)].insert(include.substr(prefix.size(), end - prefix.size()));
+    }
+  }
+  for (const auto& [name, room] : rooms) {
+    for (const std::string& used : room.uses) {
+      EXPECT_TRUE(included[name].count(used))
+          << name << " links " << used << ", and includes nothing of it";
+    }
+  }
+}
+
 TEST(Arrows, NoSourceIncludesTestsOrApps) {
   for (const fs::path& file : CppFiles({"include/masked_mapper", "src"})) {
     for (const std::string& include : IncludesOf(file)) {

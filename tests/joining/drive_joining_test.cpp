@@ -15,13 +15,13 @@
 namespace masked_mapper {
 namespace {
 
-MappingResult Joined(std::vector<MappingResult> maps) {
+BuildingMap Joined(std::vector<BuildingMap> maps) {
   ProgressSink silent;
   return JoinDrives(std::move(maps), {}, {}, silent);
 }
 
 /// The largest error of a drive of a map whose first drive begins where the truth does.
-double WorstError(const MappingResult& map, std::size_t drive, const Cut& cut) {
+double WorstError(const BuildingMap& map, std::size_t drive, const Cut& cut) {
   const IndexRange poses = PosesOfDrive(map, drive);
   EXPECT_EQ(poses.end - poses.begin, cut.truth.size());
   double worst = 0.0;
@@ -32,15 +32,15 @@ double WorstError(const MappingResult& map, std::size_t drive, const Cut& cut) {
 }
 
 TEST(DriveJoining, OneMapAloneStaysAsItIs) {
-  const MappingResult map = MapOf(First(), "join_first.log");
+  const BuildingMap map = MapOf(First(), "join_first.log");
   EXPECT_EQ(map.drives.size(), 1U);
   EXPECT_TRUE(SameMap(map, Joined({map})));
 }
 
 TEST(DriveJoining, ADriveFromElsewhereFindsItsPlace) {
-  const MappingResult first = MapOf(First(), "join_first.log");
-  const MappingResult second = MapOf(Second(), "join_second.log");
-  const MappingResult map = Joined({first, second});
+  const BuildingMap first = MapOf(First(), "join_first.log");
+  const BuildingMap second = MapOf(Second(), "join_second.log");
+  const BuildingMap map = Joined({first, second});
   ASSERT_EQ(map.drives.size(), 2U);
   EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 0}));
   EXPECT_EQ(map.graph.floors().size(), 1U);
@@ -65,17 +65,17 @@ TEST(DriveJoining, ADriveFromElsewhereFindsItsPlace) {
 }
 
 TEST(DriveJoining, ALogGivenTwiceJoinsItself) {
-  const MappingResult first = MapOf(First(), "join_first.log");
-  const MappingResult map = Joined({first, first});
+  const BuildingMap first = MapOf(First(), "join_first.log");
+  const BuildingMap map = Joined({first, first});
   EXPECT_TRUE(FactsOfDrives(map)[1].joined);
   EXPECT_LT(WorstError(map, 1, First()), 0.3) << "m";
 }
 
 TEST(DriveJoining, ThirdDrivesJoinWhatGrewBefore) {
   const Cut third(RingDrive(2.0, 0.1, 3), 500, 900);
-  const MappingResult two =
+  const BuildingMap two =
       Joined({MapOf(First(), "join_first.log"), MapOf(Second(), "join_second.log")});
-  const MappingResult map = Joined({two, MapOf(third, "join_third.log")});
+  const BuildingMap map = Joined({two, MapOf(third, "join_third.log")});
   ASSERT_EQ(map.drives.size(), 3U);
   EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 0, 0}));
   EXPECT_LT(WorstError(map, 2, third), 0.3) << "m";
@@ -97,9 +97,9 @@ TEST(DriveJoining, AnotherBuildingStaysApartBesideTheFirst) {
     other.scans[i].stamp = stamp;
     other.scans[i].T_odom_robot = Pose2{T_world_robot.x, T_world_robot.y, odometry->theta};
   }
-  const MappingResult first = MapOf(First(), "join_first.log");
-  const MappingResult second = MapOf(Cut(other, 0, 10000), "join_other.log");
-  const MappingResult map = Joined({first, second});
+  const BuildingMap first = MapOf(First(), "join_first.log");
+  const BuildingMap second = MapOf(Cut(other, 0, 10000), "join_other.log");
+  const BuildingMap map = Joined({first, second});
   const std::vector<DriveFacts> facts = FactsOfDrives(map);
   ASSERT_FALSE(facts[1].joined) << facts[1].reason;
   EXPECT_EQ(facts[1].piece, 1U);
@@ -127,13 +127,13 @@ TEST(DriveJoining, AnotherBuildingStaysApartBesideTheFirst) {
 }
 
 TEST(DriveJoining, OneScanIsTooLittleToJoin) {
-  const MappingResult map = Joined({MapOf(First(), "join_first.log"),
-                                    MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
+  const BuildingMap map = Joined({MapOf(First(), "join_first.log"),
+                                  MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
   EXPECT_FALSE(FactsOfDrives(map)[1].joined);
   EXPECT_EQ(map.trajectory.size(), First().scans.size() + 1);
   // And the other way round: a map of one scan is no map to join.
-  const MappingResult back = Joined({MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log"),
-                                     MapOf(First(), "join_first.log")});
+  const BuildingMap back = Joined({MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log"),
+                                   MapOf(First(), "join_first.log")});
   EXPECT_FALSE(FactsOfDrives(back)[1].joined);
 }
 
@@ -146,19 +146,19 @@ class StoreysAlike : public testing::Test {
     two_floors_ = MapOf(both, "join_tower.log", {{0, "low"}, {half, "-"}, {half + 8, "high"}});
   }
 
-  static MappingResult Unnamed(MappingResult map) {
+  static BuildingMap Unnamed(BuildingMap map) {
     return WithFloors(std::move(map), [](Floor& floor) {
       floor.label_given = false;
       floor.elevation_measured = true;
     });
   }
 
-  MappingResult two_floors_;
+  BuildingMap two_floors_;
 };
 
 TEST_F(StoreysAlike, AreNotToldApartByNothing) {
   ASSERT_EQ(two_floors_.graph.floors().size(), 2U);
-  const MappingResult map =
+  const BuildingMap map =
       Joined({Unnamed(two_floors_), Unnamed(MapOf(Second(), "join_second.log"))});
   const DriveFacts facts = FactsOfDrives(map)[1];
   EXPECT_FALSE(facts.joined);
@@ -167,22 +167,20 @@ TEST_F(StoreysAlike, AreNotToldApartByNothing) {
 
 TEST_F(StoreysAlike, AreToldApartByTheirNames) {
   for (const std::string label : {"low", "high"}) {
-    const MappingResult map =
-        Joined({two_floors_, MapOf(Second(), "join_named.log", {{0, label}})});
+    const BuildingMap map = Joined({two_floors_, MapOf(Second(), "join_named.log", {{0, label}})});
     const DriveFacts facts = FactsOfDrives(map)[1];
     ASSERT_TRUE(facts.joined) << facts.reason;
     EXPECT_EQ(facts.floors, std::vector<std::string>{label});
     EXPECT_EQ(map.graph.floors().size(), 2U);
   }
-  const MappingResult other =
-      Joined({two_floors_, MapOf(Second(), "join_named.log", {{0, "roof"}})});
+  const BuildingMap other = Joined({two_floors_, MapOf(Second(), "join_named.log", {{0, "roof"}})});
   EXPECT_FALSE(FactsOfDrives(other)[1].joined) << "no floor is called so";
   EXPECT_EQ(other.graph.floors().back().label, "roof.drive2");
 }
 
 TEST_F(StoreysAlike, AFloorHardlySeenIsTheOneOfItsName) {
   const std::size_t scans = Second().scans.size();
-  const MappingResult map =
+  const BuildingMap map =
       Joined({two_floors_, MapOf(Second(), "join_glimpse.log",
                                  {{0, "low"}, {scans - 12, "-"}, {scans - 2, "high"}})});
   const DriveFacts facts = FactsOfDrives(map)[1];
@@ -192,8 +190,8 @@ TEST_F(StoreysAlike, AFloorHardlySeenIsTheOneOfItsName) {
 }
 
 TEST(DriveJoining, NoTwoFloorsAreCalledAlike) {
-  const MappingResult map = Joined({MapOf(First(), "join_odd.log", {{0, "0.drive2"}}),
-                                    MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
+  const BuildingMap map = Joined({MapOf(First(), "join_odd.log", {{0, "0.drive2"}}),
+                                  MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
   ASSERT_EQ(map.graph.floors().size(), 2U);
   EXPECT_EQ(map.graph.floors()[0].label, "0.drive2");
   EXPECT_EQ(map.graph.floors()[1].label, "0.drive2_");
@@ -202,11 +200,11 @@ TEST(DriveJoining, NoTwoFloorsAreCalledAlike) {
 TEST(DriveJoining, APieceWithANamedFloorJoinsWhatGrewLater) {
   // A drive of a few metres, to which nothing can be tied.
   const Cut stub(RingDrive(1.0, 0.1, 1), 0, 60);
-  const MappingResult apart = Joined(
+  const BuildingMap apart = Joined(
       {MapOf(stub, "join_stub.log", {{0, "EG"}}), MapOf(Second(), "join_second.log", {{0, "EG"}})});
   ASSERT_FALSE(FactsOfDrives(apart)[1].joined);
   EXPECT_EQ(apart.graph.floors()[1].label, "EG.drive2");
-  const MappingResult map = Joined({apart, MapOf(First(), "join_named.log", {{0, "EG"}})});
+  const BuildingMap map = Joined({apart, MapOf(First(), "join_named.log", {{0, "EG"}})});
   EXPECT_EQ(PiecesOfDrives(map)[1], PiecesOfDrives(map)[2]);
   EXPECT_EQ(std::count_if(map.warnings.begin(), map.warnings.end(),
                           [](const std::string& warning) {
@@ -217,8 +215,7 @@ TEST(DriveJoining, APieceWithANamedFloorJoinsWhatGrewLater) {
 }
 
 TEST(DriveJoining, WhatWasTakenApartByHandStaysApart) {
-  MappingResult map =
-      Joined({MapOf(First(), "join_first.log"), MapOf(Second(), "join_second.log")});
+  BuildingMap map = Joined({MapOf(First(), "join_first.log"), MapOf(Second(), "join_second.log")});
   std::string edits;
   for (const Edge& edge : map.graph.edges()) {
     if (DriveOfNode(map, edge.from) == DriveOfNode(map, edge.to)) continue;
@@ -230,7 +227,7 @@ TEST(DriveJoining, WhatWasTakenApartByHandStaysApart) {
   }
   ApplyEditsText("edits.yaml", edits, {}, map);
   ASSERT_EQ(map.graph.floors().size(), 1U) << "two pieces on one floor";
-  const MappingResult grown =
+  const BuildingMap grown =
       Joined({map, MapOf(Cut(RingDrive(1.0, 0.1, 2), 100, 101), "join_one.log")});
   EXPECT_EQ(PiecesOfDrives(grown), (std::vector<std::size_t>{0, 1, 2}));
   const std::vector<DriveFacts> facts = FactsOfDrives(grown);
@@ -245,7 +242,7 @@ TEST(DriveJoining, APieceIsJoinedByHand) {
   const RingDrive drive(1.0, 0.1, 1);
   const Cut first(drive, 0, 150);
   const Cut second(drive, 140, 330);
-  MappingResult map = Joined({MapOf(first, "join_a.log"), MapOf(second, "join_b.log")});
+  BuildingMap map = Joined({MapOf(first, "join_a.log"), MapOf(second, "join_b.log")});
   ASSERT_FALSE(FactsOfDrives(map)[1].joined) << FactsOfDrives(map)[1].reason;
   ASSERT_EQ(map.graph.floors().size(), 2U);
   // The last scan of the first drive and that of the second at the same place.

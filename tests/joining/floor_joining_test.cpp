@@ -30,7 +30,7 @@ FloorTimeline ThreeVisits(const RingDrive& drive) {
   return floors;
 }
 
-MappingResult MapOf(const std::vector<LaserScan>& scans, const FloorTimeline& floors) {
+BuildingMap MapOf(const std::vector<LaserScan>& scans, const FloorTimeline& floors) {
   MaskedMapper mapper("openings", {}, floors);
   for (const LaserScan& scan : scans) mapper.Observe(scan);
   return mapper.Finish();

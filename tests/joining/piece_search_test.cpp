@@ -10,7 +10,7 @@ namespace masked_mapper {
 namespace {
 
 /// Both drives in one map, the second on a floor of its own, as they came.
-MappingResult SideBySide(MappingResult first, const MappingResult& second) {
+BuildingMap SideBySide(BuildingMap first, const BuildingMap& second) {
   const auto nodes = static_cast<NodeId>(first.graph.nodes().size());
   const std::size_t poses = first.trajectory.size();
   const auto floor = first.graph.AddFloor(second.graph.floors().front());
@@ -38,7 +38,7 @@ MappingResult SideBySide(MappingResult first, const MappingResult& second) {
 }
 
 TEST(PieceSearch, FindsWhereADriveBegan) {
-  const MappingResult map =
+  const BuildingMap map =
       SideBySide(MapOf(First(), "piece_first.log"), MapOf(Second(), "piece_second.log"));
   const PieceSearchResult found = FindPiece(map, {0}, {1}, {}, {});
   ASSERT_TRUE(found.placement) << found.reason;
@@ -56,7 +56,7 @@ TEST(PieceSearch, FindsWhereADriveBegan) {
 }
 
 TEST(PieceSearch, FloorsOfOtherNamesAreNotTried) {
-  MappingResult map =
+  BuildingMap map =
       SideBySide(MapOf(First(), "piece_first.log"), MapOf(Second(), "piece_second.log"));
   int floor = 0;
   map = WithFloors(map, [&](Floor& changed) {
@@ -67,7 +67,7 @@ TEST(PieceSearch, FloorsOfOtherNamesAreNotTried) {
 }
 
 TEST(PieceSearch, NothingIsFoundByNothing) {
-  MappingResult map =
+  BuildingMap map =
       SideBySide(MapOf(First(), "piece_first.log"), MapOf(Second(), "piece_second.log"));
   map.kept_scans.clear();
   const PieceSearchResult found = FindPiece(map, {0}, {1}, {}, {});

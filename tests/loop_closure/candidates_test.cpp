@@ -12,7 +12,7 @@ NodeId AddScanNode(PoseGraph& graph, const Pose2& T_world_robot, FloorId floor =
   Node node;
   node.floor = floor;
   node.T_world_robot = T_world_robot;
-  node.points_in_robot = ScanPoints::ConstPtr(new ScanPoints);
+  node.scan = 0;
   return graph.AddNode(node);
 }
 

@@ -17,7 +17,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 struct Scene {
   PoseGraph graph;
-  std::vector<Hypothesis> hypotheses;
+  std::vector<Closure> closures;
   LoopSearch search;
 };
 
@@ -42,9 +42,14 @@ Scene RandomScene(std::mt19937& random, int nodes, int edges, int closures, doub
     if (i < edges) {
       scene.graph.AddEdge({a, b, T_a_b, EdgeKind::kOdometry});
     } else {
-      scene.hypotheses.push_back({a, b, T_a_b, 0, i % 4 == 0});
-      const auto id = static_cast<HypothesisId>(scene.hypotheses.size() - 1);
-      scene.search.Add(id, scene.hypotheses.back());
+      Closure closure;
+      closure.older = a;
+      closure.newer = b;
+      closure.T_older_newer = T_a_b;
+      closure.state = i % 4 == 0 ? ClosureState::kValidated : ClosureState::kHypothesis;
+      scene.closures.push_back(closure);
+      const auto id = static_cast<ClosureId>(scene.closures.size() - 1);
+      scene.search.Add(id, scene.closures.back());
     }
   }
   return scene;
@@ -64,7 +69,10 @@ std::vector<Link> Links(const Scene& scene) {
     links.push_back({b, a, Inverse(T_a_b), unvalidated});
   };
   for (const Edge& edge : scene.graph.edges()) add(edge.from, edge.to, edge.T_from_to, 0);
-  for (const Hypothesis& h : scene.hypotheses) add(h.a, h.b, h.T_a_b, h.validated ? 0 : 1);
+  for (const Closure& closure : scene.closures) {
+    add(closure.older, closure.newer, closure.T_older_newer,
+        closure.state == ClosureState::kValidated ? 0 : 1);
+  }
   return links;
 }
 
@@ -92,7 +100,7 @@ TEST(LoopSearch, FindsTheLeastOfAllPathsWhereTheTraceIsAdditive) {
     };
     walk(0, {0, 0.0});
     const auto path =
-        scene.search.Find(scene.graph, scene.hypotheses, 0, 5, kNoLimit, RemovedSteps());
+        scene.search.Find(scene.graph, scene.closures, 0, 5, kNoLimit, RemovedSteps());
     ASSERT_EQ(path.has_value(), least.has_value());
     if (!path) continue;
     ++found;
@@ -107,20 +115,21 @@ TEST(LoopSearch, ThePathIsWhatItsStepsCompose) {
   for (int trial = 0; trial < 100; ++trial) {
     Scene scene = RandomScene(random, 8, 7, 6, 0.3);
     const auto path =
-        scene.search.Find(scene.graph, scene.hypotheses, 0, 7, kNoLimit, RemovedSteps());
+        scene.search.Find(scene.graph, scene.closures, 0, 7, kNoLimit, RemovedSteps());
     if (!path) continue;
     UncertainPose2 T;
     NodeId at = 0;
     int unvalidated = 0;
     for (const PathStep& step : path->steps) {
-      ASSERT_NE(step.edge >= 0, step.hypothesis >= 0);
+      ASSERT_NE(step.edge >= 0, step.closure >= 0);
       Link link{};
       if (step.edge >= 0) {
         const Edge& edge = scene.graph.edges()[static_cast<std::size_t>(step.edge)];
         link = {edge.from, edge.to, edge.T_from_to, 0};
       } else {
-        const Hypothesis& h = scene.hypotheses[static_cast<std::size_t>(step.hypothesis)];
-        link = {h.a, h.b, h.T_a_b, h.validated ? 0 : 1};
+        const Closure& closure = scene.closures[static_cast<std::size_t>(step.closure)];
+        link = {closure.older, closure.newer, closure.T_older_newer,
+                closure.state == ClosureState::kValidated ? 0 : 1};
       }
       T = T * (link.from == at ? link.T_from_to : Inverse(link.T_from_to));
       at = link.from == at ? link.to : link.from;
@@ -143,25 +152,29 @@ TEST(LoopSearch, ALongValidatedWayGoesBeforeAShortUnvalidatedOne) {
   const UncertainPose2 unsure{{1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity()};
   scene.graph.AddEdge({0, 1, unsure, EdgeKind::kOdometry});
   scene.graph.AddEdge({1, 2, unsure, EdgeKind::kOdometry});
-  scene.hypotheses.push_back({2, 0, {{-2.0, 0.0, 0.0}, 1e-4 * Eigen::Matrix3d::Identity()}});
-  scene.search.Add(0, scene.hypotheses[0]);
+  Closure closure;
+  closure.older = 2;
+  closure.newer = 0;
+  closure.T_older_newer = {{-2.0, 0.0, 0.0}, 1e-4 * Eigen::Matrix3d::Identity()};
+  scene.closures.push_back(closure);
+  scene.search.Add(0, scene.closures[0]);
   RemovedSteps removed;
-  auto path = scene.search.Find(scene.graph, scene.hypotheses, 0, 2, kNoLimit, removed);
+  auto path = scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->unvalidated, 0);
   // Above the limit, or taken away, it leaves the way to the other.
-  path = scene.search.Find(scene.graph, scene.hypotheses, 0, 2, 1.0, removed);
+  path = scene.search.Find(scene.graph, scene.closures, 0, 2, 1.0, removed);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->unvalidated, 1);
   removed.Add({0, -1, 1, 1});
-  path = scene.search.Find(scene.graph, scene.hypotheses, 0, 2, kNoLimit, removed);
+  path = scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->unvalidated, 1);
   EXPECT_NEAR(path->T_from_to.mean.x, 2.0, 1e-12) << "m";
   removed.Add(path->steps[0]);
-  EXPECT_FALSE(scene.search.Find(scene.graph, scene.hypotheses, 0, 2, kNoLimit, removed));
-  scene.search.Drop(0, scene.hypotheses[0]);
-  EXPECT_FALSE(scene.search.Find(scene.graph, scene.hypotheses, 0, 2, 1.0, RemovedSteps()));
+  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed));
+  scene.search.Drop(0, scene.closures[0]);
+  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, 1.0, RemovedSteps()));
 }
 
 TEST(LoopSearch, TheMostRedundantStepIsWhereMostWaysMeet) {
@@ -180,8 +193,7 @@ TEST(LoopSearch, TheMostRedundantStepIsWhereMostWaysMeet) {
   add(0, 3, 0.12);
   add(3, 4, 0.50);
   add(4, 5, 0.10);
-  const auto path =
-      scene.search.Find(scene.graph, scene.hypotheses, 0, 5, kNoLimit, RemovedSteps());
+  const auto path = scene.search.Find(scene.graph, scene.closures, 0, 5, kNoLimit, RemovedSteps());
   ASSERT_TRUE(path);
   ASSERT_EQ(path->steps.size(), 3u);
   EXPECT_EQ(path->steps[0].ways, 1);

@@ -14,8 +14,8 @@ namespace {
 
 // The first leg of the ring, every scan kept, placed by a perfect motion path; a node at its
 // middle.
-MappingResult FirstLeg(const RingDrive& drive, std::size_t scans) {
-  MappingResult map;
+BuildingMap FirstLeg(const RingDrive& drive, std::size_t scans) {
+  BuildingMap map;
   map.graph.AddFloor({});
   for (std::size_t i = 0; i < scans; ++i) {
     TrajectoryPose pose;
@@ -33,7 +33,7 @@ MappingResult FirstLeg(const RingDrive& drive, std::size_t scans) {
 
 TEST(Submaps, RefineACoarseMatchToCentimetres) {
   const RingDrive drive(0.25, 0.0);
-  const MappingResult map = FirstLeg(drive, 100);
+  const BuildingMap map = FirstLeg(drive, 100);
   Submaps submaps({}, map);
   const ScanPoints::ConstPtr points = PointsInRobot(drive.scans[53]);
   const Pose2 truth = Between(drive.truth[50], drive.truth[53]);
@@ -49,7 +49,7 @@ TEST(Submaps, RefineACoarseMatchToCentimetres) {
 
 TEST(Submaps, AScanOfAnotherPlaceIsNotForcedIn) {
   const RingDrive drive(0.25, 0.0);
-  const MappingResult map = FirstLeg(drive, 100);
+  const BuildingMap map = FirstLeg(drive, 100);
   Submaps submaps({}, map);
   BoxScene other;
   other.AddBox(-4.0, -3.0, 5.0, 6.0);
@@ -61,17 +61,25 @@ TEST(Submaps, AScanOfAnotherPlaceIsNotForcedIn) {
 
 TEST(Submaps, AnOdometryNodeSeesWhatTheScanKeptNearestSaw) {
   const RingDrive drive(0.25, 0.0);
-  MappingResult map = FirstLeg(drive, 100);
+  BuildingMap map = FirstLeg(drive, 100);
   // Between two kept scans, nearer to the later one.
   Node node;
   node.stamp = 0.5 * (drive.scans[60].stamp + drive.scans[61].stamp);
   node.T_odom_robot = drive.truth[60] * Pose2{0.15, 0.0, DegToRad(5.0)};
   const NodeId id = map.graph.AddNode(node);
-  const ScanPoints::ConstPtr own = PointsInRobot(drive.scans[7]);
-  node.points_in_robot = own;
+  const std::size_t own = 7;
+  node.scan = static_cast<KeptScanId>(own);
+  node.T_odom_robot = map.trajectory[map.kept_scans[own].trajectory_index].T_odom_robot;
   const NodeId with_scan = map.graph.AddNode(node);
+  node.T_odom_robot = map.graph.node(id).T_odom_robot;
   const Submaps submaps({}, map);
-  EXPECT_EQ(submaps.PointsAt(with_scan), own);
+  const ScanPoints::ConstPtr own_points = PointsInRobot(map.kept_scans[own].scan);
+  const ScanPoints::ConstPtr seen_with_scan = submaps.PointsAt(with_scan);
+  ASSERT_EQ(seen_with_scan->size(), own_points->size());
+  for (std::size_t i = 0; i < own_points->size(); ++i) {
+    EXPECT_EQ((*seen_with_scan)[i].x, (*own_points)[i].x);
+    EXPECT_EQ((*seen_with_scan)[i].y, (*own_points)[i].y);
+  }
   const ScanPoints::ConstPtr seen = submaps.PointsAt(id);
   const ScanPoints::ConstPtr kept = PointsInRobot(drive.scans[61]);
   ASSERT_TRUE(seen);
@@ -88,7 +96,7 @@ TEST(Submaps, AnOdometryNodeSeesWhatTheScanKeptNearestSaw) {
 
 TEST(Submaps, TheSurroundingsAreWhatWasSeenFromTheWayToANodeAndOn) {
   const RingDrive drive(0.25, 0.0);
-  MappingResult map = FirstLeg(drive, 100);  // straight, so that way and distance are the same
+  BuildingMap map = FirstLeg(drive, 100);  // straight, so that way and distance are the same
   SubmapOptions options;
   options.half_length_m = 1.13;
   const Submaps submaps(options, map);

@@ -11,6 +11,27 @@
 namespace masked_mapper {
 namespace {
 
+// A validator, and the closures that it was given.
+class Judging {
+ public:
+  explicit Judging(const ValidatorOptions& options) : validator_(options) {}
+
+  std::vector<ClosureId> Judge(const PoseGraph& graph, const std::vector<Closure>& matches) {
+    std::vector<ClosureId> ids;
+    for (const Closure& match : matches) {
+      ids.push_back(static_cast<ClosureId>(closures_.size()));
+      closures_.push_back(match);
+    }
+    return validator_.Judge(graph, ids, closures_);
+  }
+
+  const std::vector<Closure>& closures() const { return closures_; }
+
+ private:
+  LoopValidator validator_;
+  std::vector<Closure> closures_;
+};
+
 // A drive whose true poses are known, with odometry that drifts by `sigma` per square root of a
 // metre and matches that are exact to a few centimetres.
 class Drive {
@@ -42,29 +63,31 @@ class Drive {
   }
 
   // A match of two places, off the truth by `error` (seen in a).
-  Hypothesis Match(NodeId a, NodeId b, const Pose2& error = {}) {
+  Closure Match(NodeId newer, NodeId older, const Pose2& error = {}) {
     const Eigen::Vector3d sigma(0.03, 0.03, 0.006);
-    const Pose2 T_a_b = error * Between(Truth(a), Truth(b));
-    Hypothesis match;
-    match.a = a;
-    match.b = b;
-    match.T_a_b = {Disturbed(T_a_b, sigma), sigma.cwiseAbs2().asDiagonal()};
+    const Pose2 T_newer_older = error * Between(Truth(newer), Truth(older));
+    Closure match;
+    match.older = older;
+    match.newer = newer;
+    match.T_older_newer =
+        Inverse(UncertainPose2{Disturbed(T_newer_older, sigma), sigma.cwiseAbs2().asDiagonal()});
+    match.state = ClosureState::kHypothesis;
+    match.reason = ClosureReason::kTooFewVotes;
     return match;
   }
 
   // Judges, and adds what became valid to the graph, as mapping does.
-  std::vector<HypothesisId> Judge(LoopValidator& validator,
-                                  const std::vector<Hypothesis>& matches) {
-    const std::vector<HypothesisId> valid = validator.Judge(graph_, matches);
-    for (const HypothesisId id : valid) {
-      const Hypothesis& h = validator.hypotheses()[static_cast<std::size_t>(id)];
-      graph_.AddEdge({h.a, h.b, h.T_a_b, EdgeKind::kClosure});
+  std::vector<ClosureId> Judge(Judging& validator, const std::vector<Closure>& matches) {
+    const std::vector<ClosureId> valid = validator.Judge(graph_, matches);
+    for (const ClosureId id : valid) {
+      const Closure& h = validator.closures()[static_cast<std::size_t>(id)];
+      graph_.AddEdge({h.older, h.newer, h.T_older_newer, EdgeKind::kClosure});
     }
     return valid;
   }
 
-  bool IsFalse(const Hypothesis& h) const {
-    const Pose2 error = Between(h.T_a_b.mean, Between(Truth(h.a), Truth(h.b)));
+  bool IsFalse(const Closure& h) const {
+    const Pose2 error = Between(h.T_older_newer.mean, Between(Truth(h.older), Truth(h.newer)));
     return std::hypot(error.x, error.y) > 0.5 || std::abs(error.theta) > DegToRad(5.0);
   }
 
@@ -93,12 +116,13 @@ struct Count {
   int wrong_validated = 0;
 };
 
-Count CountOf(const Drive& drive, const LoopValidator& validator) {
+Count CountOf(const Drive& drive, const Judging& validator) {
   Count count;
-  for (const Hypothesis& h : validator.hypotheses()) {
+  for (const Closure& h : validator.closures()) {
     const bool wrong = drive.IsFalse(h);
     ++(wrong ? count.wrong : count.right);
-    if (h.validated) ++(wrong ? count.wrong_validated : count.right_validated);
+    if (h.state == ClosureState::kValidated)
+      ++(wrong ? count.wrong_validated : count.right_validated);
   }
   return count;
 }
@@ -125,9 +149,9 @@ TEST(LoopValidator, ARevisitedCorridorIsClosed) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
       Drive drive(0.02, 0.002, seed);
       const Revisit revisit = TwicePast(drive, 10, 40.0);
-      LoopValidator validator(options);
+      Judging validator(options);
       for (std::size_t i = 0; i < revisit.second.size(); ++i) {
-        std::vector<Hypothesis> matches{drive.Match(revisit.second[i], revisit.first[i])};
+        std::vector<Closure> matches{drive.Match(revisit.second[i], revisit.first[i])};
         if (i > 0) matches.push_back(drive.Match(revisit.second[i], revisit.first[i - 1]));
         drive.Judge(validator, matches);
       }
@@ -142,10 +166,10 @@ TEST(LoopValidator, ALoneMatchIsNotEnough) {
   Drive drive(0.02, 0.002, 1);
   const Revisit revisit = TwicePast(drive, 5, 20.0);
   for (const ValidatorOptions& options : {ValidatorOptions(), PaperRule()}) {
-    LoopValidator validator(options);
+    Judging validator(options);
     // One way round alone, over odometry: at most one vote, right as the match may be.
     EXPECT_TRUE(drive.Judge(validator, {drive.Match(revisit.second[0], revisit.first[0])}).empty());
-    EXPECT_LE(validator.hypotheses()[0].votes, 1);
+    EXPECT_LE(validator.closures()[0].votes, 1);
   }
 }
 
@@ -156,15 +180,15 @@ TEST(LoopValidator, ALoneMatchThatASureWayConfirmsIsEnough) {
     Drive drive(0.01, 0.0005, seed);
     const Revisit revisit = TwicePast(drive, 10, 40.0);
     PoseGraph graph = drive.graph();
-    const Hypothesis known = drive.Match(revisit.second[7], revisit.first[7]);
-    graph.AddEdge({known.a, known.b, known.T_a_b, EdgeKind::kClosure});
-    const Hypothesis right = drive.Match(revisit.second[9], revisit.first[9]);
-    const Hypothesis wrong = drive.Match(revisit.second[9], revisit.first[9], {1.0, 0.0, 0.0});
-    LoopValidator ours({});
+    const Closure known = drive.Match(revisit.second[7], revisit.first[7]);
+    graph.AddEdge({known.older, known.newer, known.T_older_newer, EdgeKind::kClosure});
+    const Closure right = drive.Match(revisit.second[9], revisit.first[9]);
+    const Closure wrong = drive.Match(revisit.second[9], revisit.first[9], {1.0, 0.0, 0.0});
+    Judging ours({});
     ours_takes_it += ours.Judge(graph, {right}).empty() ? 0 : 1;
-    LoopValidator ours_again({});
+    Judging ours_again({});
     EXPECT_TRUE(ours_again.Judge(graph, {wrong}).empty()) << "1 m off, seed " << seed;
-    LoopValidator paper(PaperRule());
+    Judging paper(PaperRule());
     EXPECT_TRUE(paper.Judge(graph, {right}).empty()) << "six votes, seed " << seed;
   }
   EXPECT_GE(ours_takes_it, 10) << "of 20: a gate of two sigmas refuses some that are right";
@@ -176,7 +200,7 @@ TEST(LoopValidator, VotesAreCountedOnBothSidesAndComeLater) {
   const Revisit revisit = TwicePast(drive, 8, 20.0);
   ValidatorOptions options = PaperRule();
   options.votes_needed = 3;
-  LoopValidator validator(options);
+  Judging validator(options);
   std::vector<int> newly_valid;
   for (std::size_t i = 0; i < 4; ++i) {
     newly_valid.push_back(static_cast<int>(
@@ -184,8 +208,8 @@ TEST(LoopValidator, VotesAreCountedOnBothSidesAndComeLater) {
   }
   // The first has odometry alone. The second gives it a vote and gets one, and so on: the earliest
   // gets its last vote while a later one is judged.
-  const std::vector<Hypothesis>& all = validator.hypotheses();
-  EXPECT_TRUE(all[0].validated);
+  const std::vector<Closure>& all = validator.closures();
+  EXPECT_TRUE(all[0].state == ClosureState::kValidated);
   EXPECT_EQ(newly_valid[0] + newly_valid[1], 0);
   EXPECT_GE(newly_valid[2], 1);
   EXPECT_GE(all[0].votes, 3);
@@ -199,8 +223,8 @@ TEST(LoopValidator, ALoopThatAgreesWithAnythingIsNoEvidence) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Drive drive(0.15, 0.02, seed);
     const auto add_sure = [&](NodeId a, NodeId b, PoseGraph& graph) {
-      const Hypothesis h = drive.Match(a, b);
-      graph.AddEdge({h.a, h.b, h.T_a_b, EdgeKind::kClosure});
+      const Closure h = drive.Match(a, b);
+      graph.AddEdge({h.older, h.newer, h.T_older_newer, EdgeKind::kClosure});
     };
     const std::vector<NodeId> near = drive.Corridor(0.0, 0.0, 12);
     for (int i = 1; i < 30; ++i) drive.Go({44.0, 8.0 * i, kPi / 2});
@@ -211,10 +235,10 @@ TEST(LoopValidator, ALoopThatAgreesWithAnythingIsNoEvidence) {
         for (std::size_t j = i + 2; j < 12; ++j) add_sure((*region)[j], (*region)[i], graph);
       }
     }
-    Hypothesis wrong = drive.Match(far[6], near[6], {2.0, 3.0, 0.1});
-    LoopValidator ours({});
+    Closure wrong = drive.Match(far[6], near[6], {2.0, 3.0, 0.1});
+    Judging ours({});
     EXPECT_TRUE(ours.Judge(graph, {wrong}).empty());
-    LoopValidator paper(PaperRule());
+    Judging paper(PaperRule());
     paper_takes_it += paper.Judge(graph, {wrong}).empty() ? 0 : 1;
   }
   EXPECT_GE(paper_takes_it, 1) << "the scene is meant to be one that the votes alone do not settle";
@@ -224,10 +248,10 @@ TEST(LoopValidator, APairThatAgreesByAliasingStaysOut) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Drive drive(0.03, 0.004, seed);
     const Revisit revisit = TwicePast(drive, 12, 60.0);
-    LoopValidator validator({});
+    Judging validator({});
     // Every match of one junction is shifted by one door; its neighbours agree with each other.
     const Pose2 shift{0.0, 3.0, 0.0};
-    std::vector<Hypothesis> matches;
+    std::vector<Closure> matches;
     for (std::size_t i = 4; i < 6; ++i) {
       for (std::size_t j = 3; j < 7; ++j) {
         matches.push_back(drive.Match(revisit.second[i], revisit.first[j], shift));
@@ -241,7 +265,7 @@ TEST(LoopValidator, AliasesThatOdometryRefutesStayOutHoweverMany) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Drive drive(0.01, 0.0005, seed);
     const Revisit revisit = TwicePast(drive, 16, 20.0);
-    LoopValidator validator({});
+    Judging validator({});
     // The whole corridor, taken for its parallel neighbour 8 m away.
     for (std::size_t i = 0; i < 16; ++i) {
       drive.Judge(validator, {drive.Match(revisit.second[i], revisit.first[i], {0.0, 8.0, 0.0})});
@@ -254,7 +278,7 @@ TEST(LoopValidator, PlantedWrongMatchesStayOutAndRightOnesGetIn) {
   Count sum;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Drive drive(0.02, 0.003, seed);
-    LoopValidator validator({});
+    Judging validator({});
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     std::vector<NodeId> past;
     for (int round = 0; round < 4; ++round) {
@@ -270,7 +294,7 @@ TEST(LoopValidator, PlantedWrongMatchesStayOutAndRightOnesGetIn) {
         else
           T = {0.0, 16.0 - 4.0 * (i - 20), -kPi / 2};
         const NodeId node = drive.Go(T * Pose2{0.3 * unit(drive.random()), 0.2, 0.0});
-        std::vector<Hypothesis> matches;
+        std::vector<Closure> matches;
         for (const NodeId other : past) {
           if (Distance(drive.Truth(node), drive.Truth(other)) > 1.0) continue;
           if (unit(drive.random()) > 0.5) {
@@ -300,15 +324,15 @@ TEST(LoopValidator, TheOutcomeDoesNotDependOnWhatLiesBeyondTheCutOff) {
   const auto votes = [](int far_nodes) {
     Drive drive(0.03, 0.003, 5);
     const Revisit revisit = TwicePast(drive, 8, 20.0);
-    LoopValidator validator({});
-    std::vector<Hypothesis> matches;
+    Judging validator({});
+    std::vector<Closure> matches;
     for (std::size_t i = 0; i < 8; ++i) {
       matches.push_back(drive.Match(revisit.second[i], revisit.first[i]));
     }
     for (int i = 0; i < far_nodes; ++i) drive.Go({40.0 + 8.0 * i, 0.0, 0.0});
     drive.Judge(validator, matches);
     std::vector<int> result;
-    for (const Hypothesis& h : validator.hypotheses()) result.push_back(h.votes);
+    for (const Closure& h : validator.closures()) result.push_back(h.votes);
     return result;
   };
   EXPECT_EQ(votes(0), votes(2000));
@@ -324,12 +348,12 @@ TEST(LoopValidator, TwoPiecesAreJoinedByAgreementFromSeveralPlaces) {
   for (const Edge& edge : drive.graph().edges()) {
     if (edge.from != one.back()) graph.AddEdge(edge);
   }
-  LoopValidator validator({});
+  Judging validator({});
   std::size_t valid = 0;
   for (std::size_t i = 0; i < 12; ++i) {
-    for (const HypothesisId id : validator.Judge(graph, {drive.Match(two[i], one[i])})) {
-      const Hypothesis& h = validator.hypotheses()[static_cast<std::size_t>(id)];
-      graph.AddEdge({h.a, h.b, h.T_a_b, EdgeKind::kClosure});
+    for (const ClosureId id : validator.Judge(graph, {drive.Match(two[i], one[i])})) {
+      const Closure& h = validator.closures()[static_cast<std::size_t>(id)];
+      graph.AddEdge({h.older, h.newer, h.T_older_newer, EdgeKind::kClosure});
       ++valid;
       EXPECT_GE(i, 5u) << "too early to be sure";
     }
@@ -338,28 +362,28 @@ TEST(LoopValidator, TwoPiecesAreJoinedByAgreementFromSeveralPlaces) {
 }
 
 TEST(LoopValidator, NothingToJudge) {
-  LoopValidator validator({});
+  Judging validator({});
   PoseGraph graph;
   EXPECT_TRUE(validator.Judge(graph, {}).empty());
   graph.AddFloor({});
   graph.AddNode({});
   graph.AddNode({});
-  Hypothesis match;
-  match.a = 1;
-  match.b = 0;
-  match.T_a_b.covariance = Eigen::Matrix3d::Identity();
+  Closure match;
+  match.newer = 1;
+  match.older = 0;
+  match.T_older_newer.covariance = Eigen::Matrix3d::Identity();
   EXPECT_TRUE(validator.Judge(graph, {match}).empty());
-  EXPECT_EQ(validator.hypotheses()[0].votes, 0);
+  EXPECT_EQ(validator.closures()[0].votes, 0);
 }
 
 TEST(LoopValidatorDeathTest, EndsMustBeTwoNodesOfTheGraph) {
-  LoopValidator validator({});
+  Judging validator({});
   PoseGraph graph;
   graph.AddFloor({});
   graph.AddNode({});
-  Hypothesis match;
+  Closure match;
   EXPECT_DEATH(validator.Judge(graph, {match}), "");
-  match.a = 3;
+  match.newer = 3;
   EXPECT_DEATH(validator.Judge(graph, {match}), "");
 }
 

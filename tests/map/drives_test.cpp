@@ -7,8 +7,8 @@ namespace masked_mapper {
 namespace {
 
 /// Three drives of two nodes and three scans each.
-MappingResult ThreeDrives() {
-  MappingResult map;
+BuildingMap ThreeDrives() {
+  BuildingMap map;
   map.graph.AddFloor({"0"});
   map.graph.AddFloor({"up"});
   for (int drive = 0; drive < 3; ++drive) {
@@ -24,7 +24,7 @@ MappingResult ThreeDrives() {
 }
 
 TEST(Drives, NodesAndPosesBelongToOne) {
-  const MappingResult map = ThreeDrives();
+  const BuildingMap map = ThreeDrives();
   EXPECT_EQ(DriveOfNode(map, 0), 0U);
   EXPECT_EQ(DriveOfNode(map, 1), 0U);
   EXPECT_EQ(DriveOfNode(map, 2), 1U);
@@ -38,7 +38,7 @@ TEST(Drives, NodesAndPosesBelongToOne) {
 }
 
 TEST(Drives, AMapMadeByHandIsOneDrive) {
-  MappingResult map = ThreeDrives();
+  BuildingMap map = ThreeDrives();
   map.drives.clear();
   EXPECT_EQ(DriveOfNode(map, 5), 0U);
   EXPECT_EQ(NodesOfDrive(map, 0).end, 6U);
@@ -48,7 +48,7 @@ TEST(Drives, AMapMadeByHandIsOneDrive) {
 }
 
 TEST(Drives, ClosuresMakePieces) {
-  MappingResult map = ThreeDrives();
+  BuildingMap map = ThreeDrives();
   EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 1, 2}));
   map.graph.AddEdge({4, 2, {}, EdgeKind::kClosure});
   EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 1, 1}));

@@ -50,10 +50,10 @@ class CheckpointFileTest : public testing::Test {
   }
 
   /// Maps with a checkpoint after every scan, or every as many as cost little.
-  MappingResult Map(bool resume, std::uint64_t break_at = 0) {
+  BuildingMap Map(bool resume, std::uint64_t break_at = 0) {
     CheckpointFile checkpoints(folder_ / "out", origin_, 1e-9, resume);
     Breaker breaker(break_at);
-    MappingResult map =
+    BuildingMap map =
         MapLog(origin_.log, origin_.mask, origin_.options.mapping, breaker, &checkpoints);
     EXPECT_TRUE(breaker.warnings.empty()) << breaker.warnings.front();
     return map;
@@ -77,7 +77,7 @@ class CheckpointFileTest : public testing::Test {
 };
 
 TEST_F(CheckpointFileTest, GoesOnToTheSameMap) {
-  const MappingResult whole = Map(false);
+  const BuildingMap whole = Map(false);
   CheckpointFile(folder_ / "out", origin_, 1.0, false).Remove();
   EXPECT_FALSE(CheckpointFile::Exists(folder_ / "out"));
   for (const std::uint64_t scan : {3U, 200U, 201U, 300U}) {
@@ -125,7 +125,7 @@ TEST_F(CheckpointFileTest, TwoRunsAtOnceAreRefused) {
 
 TEST_F(CheckpointFileTest, DamageIsRefusedOrHarmless) {
   EXPECT_THROW(Map(false, 200), std::runtime_error);
-  const MappingResult whole = Map(true);
+  const BuildingMap whole = Map(true);
   EXPECT_THROW(Map(false, 200), std::runtime_error);
   const std::string bytes = ReadBytes(File());
   std::mt19937 random(1);

@@ -30,7 +30,7 @@ class FinishedDrivesTest : public testing::Test {
 
 TEST_F(FinishedDrivesTest, AreKeptUntilAllAreDone) {
   origin_.later_logs = {{(folder_ / "ring.log").string(), ""}};
-  const MappingResult whole = SampleMap();
+  const BuildingMap whole = SampleMap();
   const fs::path checkpoint = folder_ / ".out.unfinished/checkpoint.mmck";
   fs::create_directory(checkpoint.parent_path());
   std::ofstream(checkpoint) << "a checkpoint";
@@ -43,7 +43,7 @@ TEST_F(FinishedDrivesTest, AreKeptUntilAllAreDone) {
   EXPECT_FALSE(fs::exists(checkpoint)) << "the drive's checkpoint is of no use any more";
   EXPECT_TRUE(CheckpointFile::Exists(folder_ / "out"));
   FinishedDrives finished(folder_ / "out", origin_, true);
-  const std::optional<MappingResult> kept = finished.Load(0);
+  const std::optional<BuildingMap> kept = finished.Load(0);
   ASSERT_TRUE(kept);
   EXPECT_TRUE(SameMap(whole, *kept));
   EXPECT_FALSE(finished.Load(1));

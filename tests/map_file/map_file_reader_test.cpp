@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Values that are easily lost on the way: zeros with a sign, what is not finite, odd bytes.
-MappingResult AwkwardMap() {
-  MappingResult map = SampleMap();
+BuildingMap AwkwardMap() {
+  BuildingMap map = SampleMap();
   LaserScan& scan = map.kept_scans[1].scan;
   scan.ranges = {1.5F, kNoReturn, kInvalidRange, 1e-38F};
   scan.T_odom_robot = Pose2{-0.0, 1e-300, 3.0};
@@ -53,7 +53,7 @@ TEST(MapFileReader, GivesBackWhatWasWritten) {
   SetOption("test", "matcher.min_score", "0.3", origin.options);
   SetOption("test", "motion.source", "scans", origin.options);
   SetOption("test", "log.scan_topic", "/scan", origin.options);
-  const MappingResult map = AwkwardMap();
+  const BuildingMap map = AwkwardMap();
   WriteMapFile(origin, map, folder / "odd name?%41#.mmap");
   const SavedMap read = ReadMapFile(folder / "odd name?%41#.mmap");
   EXPECT_TRUE(SameMap(map, read.result));
@@ -96,7 +96,7 @@ TEST(MapFileReader, RefusesANewerVersion) {
 // A damaged file is either read rightly (the damage fell where nothing is kept) or refused.
 TEST(MapFileReader, DamageIsNoticed) {
   const TestFolder folder;
-  const MappingResult map = AwkwardMap();
+  const BuildingMap map = AwkwardMap();
   WriteMapFile({}, map, folder / "a.mmap");
   const std::string whole = ReadBytes(folder / "a.mmap");
   std::mt19937 random(1);
@@ -128,8 +128,8 @@ TEST(MapFileReader, DamageIsNoticed) {
 }
 
 /// Of two logs: the second drive made the last node, and the scans from there on.
-MappingResult MapOfTwoDrives() {
-  MappingResult map = SampleMap();
+BuildingMap MapOfTwoDrives() {
+  BuildingMap map = SampleMap();
   map.drives.resize(2);
   map.drives[0].log = "one.log";
   map.drives[1].log = "two \"logs\".gz";
@@ -157,7 +157,7 @@ TEST(MapFileReader, GivesBackDrives) {
   origin.later_logs = {{"two.log", ""}, {"three.log", "floors.csv"}};
   origin.onto = "old/building.mmap";
   origin.identity = "12 bytes\n13 bytes";
-  const MappingResult map = MapOfTwoDrives();
+  const BuildingMap map = MapOfTwoDrives();
   WriteMapFile(origin, map, folder / "a.mmap");
   const SavedMap read = ReadMapFile(folder / "a.mmap");
   EXPECT_TRUE(SameMap(map, read.result));
@@ -242,8 +242,8 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
            "UPDATE nodes SET point_count = 1000000000000 WHERE id = 1",
            "UPDATE nodes SET point_count = -1 WHERE id = 1",
            "UPDATE nodes SET point_count = point_count + 1 WHERE id = 1",
-           "UPDATE nodes SET points = x'00' WHERE id = 1",
-           "UPDATE nodes SET points = NULL WHERE id = 1",
+           "UPDATE nodes SET scan = 99 WHERE id = 1",
+           "UPDATE edges SET closure = 3 WHERE kind = 'closure'",
            "DELETE FROM nodes WHERE id = 3",
            "DELETE FROM nodes WHERE id = 1",
            "UPDATE edges SET from_node = to_node WHERE id = 0",
@@ -251,9 +251,9 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
            "UPDATE edges SET kind = 'closure' WHERE id = 2",
            "UPDATE edges SET kind = 'rope' WHERE id = 2",
            "UPDATE edges SET covariance = x'0000' WHERE id = 2",
-           "UPDATE attempts SET a = 99 WHERE id = 2",
-           "UPDATE attempts SET votes = 1 << 40 WHERE id = 2",
-           "UPDATE attempts SET state = 'sure' WHERE id = 2",
+           "UPDATE closures SET older = 99 WHERE id = 2",
+           "UPDATE closures SET votes = 1 << 40 WHERE id = 2",
+           "UPDATE closures SET state = 'sure' WHERE id = 2",
            "UPDATE trajectory SET pose_count = 7",
            "UPDATE trajectory SET poses_checksum = 0",
            "DELETE FROM trajectory",

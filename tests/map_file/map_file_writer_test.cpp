@@ -12,7 +12,7 @@ namespace {
 
 TEST(MapFileWriter, SameMapSameBytesWhateverTimeItTook) {
   const TestFolder folder;
-  MappingResult map = SampleMap();
+  BuildingMap map = SampleMap();
   WriteMapFile({"drive.log", "openings", {}}, map, folder / "a.mmap");
   map.seconds.total = 77.0;
   MapOrigin origin{"drive.log", "openings", {}};

@@ -40,32 +40,28 @@ Checkpoint Kept(MaskedMapper& mapper) {
   Checkpoint checkpoint;
   checkpoint.state.bytes = mapper.SaveState();
   // In two pieces, as they grow.
-  const MappingResult& map = mapper.result();
+  const BuildingMap& map = mapper.result();
   std::vector<TrajectoryPose> poses = map.trajectory;
   std::vector<KeptScan> scans = map.kept_scans;
-  std::vector<Node> nodes = map.graph.nodes();
   poses.resize(poses.size() / 2);
   scans.resize(scans.size() / 2);
-  nodes.resize(nodes.size() / 2);
   AppendPoses(PackPoses(poses, 0), checkpoint.parts);
   AppendPoses(PackPoses(map.trajectory, poses.size()), checkpoint.parts);
   AppendScans(PackScans(scans, 0), checkpoint.parts);
   AppendScans(PackScans(map.kept_scans, scans.size()), checkpoint.parts);
-  AppendPoints(PackPoints(nodes, 0), checkpoint.parts);
-  AppendPoints(PackPoints(map.graph.nodes(), nodes.size()), checkpoint.parts);
   return checkpoint;
 }
 
-MappingResult Unbroken(const RingDrive& drive, const std::string& mask,
-                       const MappingOptions& options, const FloorTimeline& floors) {
+BuildingMap Unbroken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
+                     const FloorTimeline& floors) {
   MaskedMapper mapper(mask, options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
   return mapper.Finish();
 }
 
 /// The same, but at each of `breaks` all is put away and taken up by another mapper.
-MappingResult Broken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
-                     const FloorTimeline& floors, const std::vector<std::size_t>& breaks) {
+BuildingMap Broken(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
+                   const FloorTimeline& floors, const std::vector<std::size_t>& breaks) {
   auto mapper = std::make_unique<MaskedMapper>(mask, options, floors);
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
     if (std::find(breaks.begin(), breaks.end(), i) != breaks.end()) {
@@ -98,14 +94,14 @@ TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
   };
   for (const auto& one : drives) {
     const MappingOptions options = OptionsFor(one.source);
-    const MappingResult whole = Unbroken(drive, one.mask, options, one.floors);
-    const MappingResult broken =
+    const BuildingMap whole = Unbroken(drive, one.mask, options, one.floors);
+    const BuildingMap broken =
         Broken(drive, one.mask, options, one.floors,
                {1, 2, n / 5, 2 * n / 5, 41 * n / 100, 43 * n / 100, 46 * n / 100, n / 2, 7 * n / 10,
                 7 * n / 10 + 1, 4 * n / 5, n - 1});
     EXPECT_TRUE(SameMap(whole, broken)) << one.mask;
     if (std::string(one.mask) != "never") {
-      EXPECT_GE(whole.attempts.size(), 2U) << one.mask;
+      EXPECT_GE(whole.closures.size(), 2U) << one.mask;
     }
   }
 }

@@ -21,7 +21,7 @@ TEST(MapLog, ALogBecomesAMapWithAPoseForEveryScan) {
   for (const LaserScan& scan : drive.scans) writer.Write(scan);
   writer.Close();
   ProgressSink silent;
-  const MappingResult map = MapLog(path, "openings", {}, silent);
+  const BuildingMap map = MapLog(path, "openings", {}, silent);
   ASSERT_EQ(map.trajectory.size(), drive.scans.size());
   EXPECT_EQ(map.log.scans, drive.scans.size());
   EXPECT_EQ(map.motion_source, MotionSource::kFused);
@@ -47,7 +47,7 @@ TEST(MapLog, ABagOfAFullCircleScannerIsMappedRight) {
                               path + ".log " + path + ".bag >/dev/null 2>&1";
   if (std::system(command.c_str()) != 0) GTEST_SKIP() << "python3-rosbag is not installed";
   ProgressSink silent;
-  const MappingResult map = MapLog(path + ".bag", "openings", {}, silent);
+  const BuildingMap map = MapLog(path + ".bag", "openings", {}, silent);
   ASSERT_EQ(map.trajectory.size(), drive.scans.size());
   EXPECT_TRUE(map.kept_scans.front().scan.IsFullCircle());
   double worst = 0.0;
@@ -63,8 +63,8 @@ TEST(MapLog, ABagAndATextLogOfOneDriveGiveOneMap) {
     if (!std::filesystem::exists(shared + file)) GTEST_SKIP() << file << " is not there";
   }
   ProgressSink silent;
-  const MappingResult text = MapLog(shared + "/data/mit-csail.clf.gz", "openings", {}, silent);
-  const MappingResult bag = MapLog(shared + "/bags/mit-csail.bag", "openings", {}, silent);
+  const BuildingMap text = MapLog(shared + "/data/mit-csail.clf.gz", "openings", {}, silent);
+  const BuildingMap bag = MapLog(shared + "/bags/mit-csail.bag", "openings", {}, silent);
   // Single precision of the bag's angles and the rounding of its quaternions are taken off: nothing
   // is left of them.
   ASSERT_EQ(text.trajectory.size(), 1988U);
@@ -75,9 +75,9 @@ TEST(MapLog, ABagAndATextLogOfOneDriveGiveOneMap) {
               text.trajectory[i].T_world_robot.AsVector())
         << "scan " << i;
   }
-  ASSERT_EQ(bag.attempts.size(), text.attempts.size());
-  for (std::size_t i = 0; i < text.attempts.size(); ++i) {
-    EXPECT_EQ(bag.attempts[i].state, text.attempts[i].state) << "attempt " << i;
+  ASSERT_EQ(bag.closures.size(), text.closures.size());
+  for (std::size_t i = 0; i < text.closures.size(); ++i) {
+    EXPECT_EQ(bag.closures[i].state, text.closures[i].state) << "closure " << i;
   }
 }
 
@@ -85,19 +85,19 @@ TEST(MapLog, AcesIsMappedAsWellAsItsRelationsCanTell) {
   const std::string path = std::string(MASKED_MAPPER_REAL_LOGS) + "/data/aces.clf.gz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   ProgressSink silent;
-  const MappingResult openings = MapLog(path, "openings", {}, silent);
+  const BuildingMap openings = MapLog(path, "openings", {}, silent);
   EXPECT_EQ(openings.trajectory.size(), 7374U);
   std::size_t validated = 0;
-  for (const ClosureAttempt& attempt : openings.attempts) {
-    validated += attempt.state == ClosureState::kValidated;
+  for (const Closure& closure : openings.closures) {
+    validated += closure.state == ClosureState::kValidated;
   }
   EXPECT_GT(validated, 20U);
   // Fewer matches is what a mask is for (Section I).
-  const MappingResult always = MapLog(path, "always", {}, silent);
-  EXPECT_LE(3 * openings.attempts.size(), always.attempts.size());
+  const BuildingMap always = MapLog(path, "always", {}, silent);
+  EXPECT_LE(3 * openings.closures.size(), always.closures.size());
   // And still fewer of the same map, where new ground asks for few nodes.
-  const MappingResult sparse = MapLog(path, "sparse(openings)", {}, silent);
-  EXPECT_LE(4 * sparse.attempts.size(), 3 * openings.attempts.size());
+  const BuildingMap sparse = MapLog(path, "sparse(openings)", {}, silent);
+  EXPECT_LE(4 * sparse.closures.size(), 3 * openings.closures.size());
   double apart = 0.0;
   for (std::size_t i = 0; i < sparse.trajectory.size(); ++i) {
     apart = std::max(

@@ -16,14 +16,14 @@ MappingOptions OptionsFor(MotionSource source) {
   return options;
 }
 
-MappingResult Map(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
-                  const FloorTimeline& floors = {}) {
+BuildingMap Map(const RingDrive& drive, const std::string& mask, const MappingOptions& options,
+                const FloorTimeline& floors = {}) {
   MaskedMapper mapper(mask, options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
   return mapper.Finish();
 }
 
-double LargestError(const RingDrive& drive, const MappingResult& map) {
+double LargestError(const RingDrive& drive, const BuildingMap& map) {
   double worst = 0.0;
   for (std::size_t i = 0; i < drive.truth.size(); ++i) {
     worst = std::max(worst, Distance(drive.truth[i], map.trajectory[i].T_world_robot));
@@ -31,18 +31,18 @@ double LargestError(const RingDrive& drive, const MappingResult& map) {
   return worst;
 }
 
-std::size_t Validated(const MappingResult& map) {
+std::size_t Validated(const BuildingMap& map) {
   std::size_t count = 0;
-  for (const ClosureAttempt& attempt : map.attempts) {
-    count += attempt.state == ClosureState::kValidated;
+  for (const Closure& closure : map.closures) {
+    count += closure.state == ClosureState::kValidated;
   }
   return count;
 }
 
 TEST(MaskedMapper, NeverIsDeadReckoning) {
   const RingDrive drive(1.0, 0.3);
-  const MappingResult map = Map(drive, "never", OptionsFor(MotionSource::kOdometry));
-  EXPECT_TRUE(map.attempts.empty());
+  const BuildingMap map = Map(drive, "never", OptionsFor(MotionSource::kOdometry));
+  EXPECT_TRUE(map.closures.empty());
   ASSERT_EQ(map.trajectory.size(), drive.scans.size());
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
     EXPECT_NEAR(Distance(map.trajectory[i].T_world_robot, *drive.scans[i].T_odom_robot), 0.0, 1e-9);
@@ -51,9 +51,9 @@ TEST(MaskedMapper, NeverIsDeadReckoning) {
 
 TEST(MaskedMapper, NodesKeepTheirDistances) {
   const RingDrive drive(1.0, 0.3);
-  const Options options = OptionsFor(MotionSource::kOdometry);
+  const MappingOptions options = OptionsFor(MotionSource::kOdometry);
   for (const char* mask : {"always", "openings", "never"}) {
-    const MappingResult map = Map(drive, mask, options);
+    const BuildingMap map = Map(drive, mask, options);
     const std::vector<Node>& nodes = map.graph.nodes();
     EXPECT_TRUE(nodes.front().HasScan()) << "node 0 is a scan node";
     const Node* last_scan_node = nullptr;
@@ -78,20 +78,20 @@ TEST(MaskedMapper, ClosuresBringADriftingPathHome) {
   const double drifted =
       LargestError(drive, Map(drive, "never", OptionsFor(MotionSource::kOdometry)));
   EXPECT_GT(drifted, 3.0) << "m, or the test shows nothing";
-  const MappingResult map = Map(drive, "always", OptionsFor(MotionSource::kOdometry));
+  const BuildingMap map = Map(drive, "always", OptionsFor(MotionSource::kOdometry));
   EXPECT_GT(Validated(map), 5U);
   EXPECT_LT(LargestError(drive, map), 0.25 * drifted) << "m";
 }
 
 TEST(MaskedMapper, ScansAndClosuresTogetherAreGoodToCentimetres) {
   const RingDrive drive(2.0, 0.3);
-  const MappingResult map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
+  const BuildingMap map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
   EXPECT_LT(LargestError(drive, map), 0.25) << "m";
 }
 
 TEST(MaskedMapper, EveryClosureOfTheRingIsTrue) {
   const RingDrive drive(2.0, 0.15);
-  const MappingResult map = Map(drive, "always", OptionsFor(MotionSource::kOdometry));
+  const BuildingMap map = Map(drive, "always", OptionsFor(MotionSource::kOdometry));
   const auto truth_at = [&](NodeId id) {
     const double stamp = map.graph.nodes()[static_cast<std::size_t>(id)].stamp;
     for (std::size_t i = 0; i < drive.scans.size(); ++i) {
@@ -100,10 +100,10 @@ TEST(MaskedMapper, EveryClosureOfTheRingIsTrue) {
     ADD_FAILURE() << "a node without a scan's stamp";
     return Pose2{};
   };
-  for (const ClosureAttempt& attempt : map.attempts) {
-    if (attempt.state != ClosureState::kValidated) continue;
-    const Pose2 left =
-        Between(Between(truth_at(attempt.a), truth_at(attempt.b)), attempt.T_a_b.mean);
+  for (const Closure& closure : map.closures) {
+    if (closure.state != ClosureState::kValidated) continue;
+    const Pose2 left = Between(Between(truth_at(closure.older), truth_at(closure.newer)),
+                               closure.T_older_newer.mean);
     EXPECT_LT(std::hypot(left.x, left.y), 0.5) << "m";
     EXPECT_LT(RadToDeg(std::abs(left.theta)), 5.0) << "deg";
   }
@@ -111,11 +111,11 @@ TEST(MaskedMapper, EveryClosureOfTheRingIsTrue) {
 
 TEST(MaskedMapper, AnyNumberOfThreadsGivesTheSameMap) {
   const RingDrive drive(1.25, 0.15);
-  Options options = OptionsFor(MotionSource::kFused);
+  MappingOptions options = OptionsFor(MotionSource::kFused);
   options.closures.matcher.threads = 1;
-  const MappingResult one = Map(drive, "always", options);
+  const BuildingMap one = Map(drive, "always", options);
   options.closures.matcher.threads = 2;
-  const MappingResult two = Map(drive, "always", options);
+  const BuildingMap two = Map(drive, "always", options);
   ASSERT_EQ(one.trajectory.size(), two.trajectory.size());
   for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
     EXPECT_EQ(one.trajectory[i].T_world_robot.x, two.trajectory[i].T_world_robot.x);
@@ -129,7 +129,7 @@ TEST(MaskedMapper, ChangeOfFloorIsAPairOfOdometryNodesAndAnEdge) {
   floors.levels.resize(2);
   const double ride = drive.scans[drive.scans.size() / 2].stamp;
   floors.intervals = {{0.0, 0, false}, {ride, 0, true}, {ride + 3.0, 1, false}};
-  const MappingResult map = Map(drive, "always", OptionsFor(MotionSource::kOdometry), floors);
+  const BuildingMap map = Map(drive, "always", OptionsFor(MotionSource::kOdometry), floors);
   int changes = 0;
   for (const Edge& edge : map.graph.edges()) {
     const Node& from = map.graph.nodes()[static_cast<std::size_t>(edge.from)];
@@ -149,16 +149,15 @@ TEST(MaskedMapper, ChangeOfFloorIsAPairOfOdometryNodesAndAnEdge) {
     EXPECT_FALSE(kept.scan.stamp >= ride && kept.scan.stamp < ride + 3.0)
         << "scans in transit are not rendered";
   }
-  for (const ClosureAttempt& attempt : map.attempts) {
-    EXPECT_EQ(map.graph.nodes()[static_cast<std::size_t>(attempt.a)].floor,
-              map.graph.nodes()[static_cast<std::size_t>(attempt.b)].floor);
+  for (const Closure& closure : map.closures) {
+    EXPECT_EQ(map.graph.node(closure.newer).floor, map.graph.node(closure.older).floor);
   }
 }
 
 TEST(MaskedMapper, OneScanIsAMap) {
   const RingDrive drive(0.0, 0.0);
   ASSERT_EQ(drive.scans.size(), 1U);
-  const MappingResult map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
+  const BuildingMap map = Map(drive, "openings", OptionsFor(MotionSource::kFused));
   EXPECT_EQ(map.graph.nodes().size(), 1U);
   EXPECT_EQ(map.trajectory.size(), 1U);
   const FloorTimeline floors;
@@ -175,12 +174,12 @@ TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
     const FloorTimeline floors;
     MaskedMapper mapper("openings", options, floors);
     for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
-    const MappingResult map = mapper.Finish();
+    const BuildingMap map = mapper.Finish();
     int late = 0;
-    for (const ClosureAttempt& attempt : map.attempts) {
-      if (attempt.reason != "fits the optimised map") continue;
+    for (const Closure& closure : map.closures) {
+      if (closure.reason != ClosureReason::kFitsTheMap) continue;
       ++late;
-      EXPECT_EQ(attempt.state, ClosureState::kValidated);
+      EXPECT_EQ(closure.state, ClosureState::kValidated);
       const auto truth_at = [&](NodeId node) {
         const double stamp = map.graph.nodes()[static_cast<std::size_t>(node)].stamp;
         for (std::size_t i = 0; i < drive.scans.size(); ++i) {
@@ -189,8 +188,8 @@ TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
         ADD_FAILURE() << "no scan at a node";
         return Pose2();
       };
-      const Pose2 error =
-          Between(attempt.T_a_b.mean, Between(truth_at(attempt.a), truth_at(attempt.b)));
+      const Pose2 error = Between(closure.T_older_newer.mean,
+                                  Between(truth_at(closure.older), truth_at(closure.newer)));
       EXPECT_LT(std::hypot(error.x, error.y), 0.1) << "m";
       EXPECT_LT(RadToDeg(std::abs(error.theta)), 1.0) << "deg";
     }
@@ -213,20 +212,21 @@ TEST(MaskedMapper, ACorridorPassedAgainIsClosedBetweenItsMaskedPlaces) {
   };
   std::size_t offered = 0;
   for (const double distance_m : {0.0, 2.0}) {
-    Options options = OptionsFor(MotionSource::kFused);
+    MappingOptions options = OptionsFor(MotionSource::kFused);
     options.closures.polish.revisits.distance_m = distance_m;
-    const MappingResult map = Map(drive, "openings", options);
+    const BuildingMap map = Map(drive, "openings", options);
     const std::vector<Node>& nodes = map.graph.nodes();
     int between_scans = 0;
-    for (const ClosureAttempt& attempt : map.attempts) {
-      const Node& a = nodes[static_cast<std::size_t>(attempt.a)];
-      const Node& b = nodes[static_cast<std::size_t>(attempt.b)];
-      if (a.HasScan() && b.HasScan()) continue;
+    for (const Closure& closure : map.closures) {
+      const Node& older = map.graph.node(closure.older);
+      const Node& newer = map.graph.node(closure.newer);
+      if (older.HasScan() && newer.HasScan()) continue;
       ++between_scans;
-      EXPECT_EQ(attempt.state, ClosureState::kValidated) << attempt.reason;
-      EXPECT_GT(attempt.a, attempt.b);
-      EXPECT_GT(attempt.score, options.closures.matcher.min_score);
-      const Pose2 error = Between(attempt.T_a_b.mean, Between(truth_at(a), truth_at(b)));
+      EXPECT_EQ(closure.state, ClosureState::kValidated) << Name(closure.reason);
+      EXPECT_GT(closure.newer, closure.older);
+      EXPECT_GT(closure.score, options.closures.matcher.min_score);
+      const Pose2 error =
+          Between(closure.T_older_newer.mean, Between(truth_at(older), truth_at(newer)));
       EXPECT_LT(std::hypot(error.x, error.y), 0.1) << "m";
       EXPECT_LT(RadToDeg(std::abs(error.theta)), 1.0) << "deg";
     }
@@ -238,18 +238,18 @@ TEST(MaskedMapper, ACorridorPassedAgainIsClosedBetweenItsMaskedPlaces) {
     if (distance_m > 0.0) {
       EXPECT_GT(between_scans, 0);
       EXPECT_EQ(open, 0U);
-      EXPECT_LE(map.attempts.size(), offered + open + 12) << "one closure joins its surroundings";
+      EXPECT_LE(map.closures.size(), offered + open + 12) << "one closure joins its surroundings";
     } else {
       EXPECT_EQ(between_scans, 0);
       EXPECT_GT(open, 0U) << "or the test shows nothing";
-      offered = map.attempts.size();
+      offered = map.closures.size();
     }
   }
 }
 
 TEST(MaskedMapper, DeadReckoningStaysDeadReckoningWhenItIsGood) {
   const RingDrive drive(2.3, 0.0);
-  EXPECT_TRUE(Map(drive, "never", OptionsFor(MotionSource::kFused)).attempts.empty());
+  EXPECT_TRUE(Map(drive, "never", OptionsFor(MotionSource::kFused)).closures.empty());
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ struct Cut {
 };
 
 /// In a file of this test's own: tests run side by side.
-inline MappingResult MapOf(const Cut& cut, const std::string& name,
-                           const std::vector<std::pair<std::size_t, std::string>>& labels = {}) {
+inline BuildingMap MapOf(const Cut& cut, const std::string& name,
+                         const std::vector<std::pair<std::size_t, std::string>>& labels = {}) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string file = std::string(test->test_suite_name()) + "." + test->name() + "." + name;
   const std::string path = (std::filesystem::path(testing::TempDir()) / file).string();
@@ -52,7 +52,7 @@ inline MappingResult MapOf(const Cut& cut, const std::string& name,
 }
 
 /// The same map with other floors.
-inline MappingResult WithFloors(MappingResult map, const std::function<void(Floor&)>& change) {
+inline BuildingMap WithFloors(BuildingMap map, const std::function<void(Floor&)>& change) {
   PoseGraph graph;
   for (Floor floor : map.graph.floors()) {
     change(floor);

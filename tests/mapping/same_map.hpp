@@ -15,7 +15,7 @@ namespace masked_mapper {
 /// Everything in a map as bytes, each with a word for what it is. NaN equals itself.
 class MapBytes {
  public:
-  explicit MapBytes(const MappingResult& map) {
+  explicit MapBytes(const BuildingMap& map) {
     for (const Floor& floor : map.graph.floors()) {
       Add("floor", floor.label);
       AddNumber("floor", floor.elevation);
@@ -30,7 +30,7 @@ class MapBytes {
       AddNumber("edge", static_cast<int>(edge.kind));
       AddPose("edge", edge.T_from_to);
     }
-    for (const ClosureAttempt& attempt : map.attempts) AddAttempt(attempt);
+    for (const Closure& closure : map.closures) AddClosure(closure);
     for (const TrajectoryPose& pose : map.trajectory) {
       AddNumber("trajectory", pose.stamp);
       AddNumber("trajectory", pose.floor);
@@ -84,24 +84,19 @@ class MapBytes {
     AddNumber("node", node.floor);
     AddPose("node", node.T_odom_robot);
     AddPose("node", node.T_world_robot);
-    AddNumber("node", node.HasScan());
-    if (!node.HasScan()) return;
-    for (const pcl::PointXY& point : *node.points_in_robot) {
-      AddNumber("point", point.x);
-      AddNumber("point", point.y);
-    }
+    AddNumber("node", node.scan);
   }
 
-  void AddAttempt(const ClosureAttempt& attempt) {
-    AddNumber("attempt", attempt.a);
-    AddNumber("attempt", attempt.b);
-    AddPose("attempt", attempt.T_a_b);
-    AddNumber("attempt", attempt.score);
-    AddNumber("attempt", attempt.mahalanobis);
-    AddNumber("attempt", attempt.agreement);
-    AddNumber("attempt", attempt.votes);
-    AddNumber("attempt", static_cast<int>(attempt.state));
-    Add("attempt", attempt.reason);
+  void AddClosure(const Closure& closure) {
+    AddNumber("closure", closure.older);
+    AddNumber("closure", closure.newer);
+    AddPose("closure", closure.T_older_newer);
+    AddNumber("closure", closure.score);
+    AddNumber("closure", closure.mahalanobis);
+    AddNumber("closure", closure.agreement);
+    AddNumber("closure", closure.votes);
+    AddNumber("closure", static_cast<int>(closure.state));
+    AddNumber("closure", static_cast<int>(closure.reason));
   }
 
   void AddScan(const LaserScan& scan) {
@@ -136,7 +131,7 @@ class MapBytes {
   std::vector<std::pair<std::string, std::string>> parts_;
 };
 
-inline ::testing::AssertionResult SameMap(const MappingResult& a, const MappingResult& b) {
+inline ::testing::AssertionResult SameMap(const BuildingMap& a, const BuildingMap& b) {
   const MapBytes bytes_a(a);
   const MapBytes bytes_b(b);
   for (std::size_t i = 0; i < std::min(bytes_a.parts().size(), bytes_b.parts().size()); ++i) {

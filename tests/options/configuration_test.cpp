@@ -30,8 +30,8 @@ TEST(Configuration, NestedAndDottedKeysAreTheSame) {
   ReadConfigurationText("n", "matcher:\n  min_score: 0.5\n  table:\n    levels: 5\n", nested);
   Options dotted;
   ReadConfigurationText("d", "matcher.min_score: 0.5\nmatcher.table: {levels: 5}\n", dotted);
-  EXPECT_EQ(nested.matcher.min_score, 0.5);
-  EXPECT_EQ(nested.matcher.table.levels, 5);
+  EXPECT_EQ(nested.mapping.closures.matcher.min_score, 0.5);
+  EXPECT_EQ(nested.mapping.closures.matcher.table.levels, 5);
   EXPECT_EQ(OptionValues(nested), OptionValues(dotted));
 }
 

@@ -7,7 +7,6 @@
 #include <regex>
 #include <set>
 
-#include "house/source_tree.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -30,56 +29,14 @@ std::string TextOf(Options& options, const std::string& key) {
   return "no such key";
 }
 
-struct Field {
-  std::string type;
-  std::string name;
-};
-
-/// The fields of every `struct ...Options` and `struct Options` of the headers, read from their
-/// text.
-std::map<std::string, std::vector<Field>> FieldsOfOptionStructs() {
-  const std::regex head(R"(^struct (\w*Options) \{)");
-  const std::regex field(R"(^  ([A-Za-z_][\w:]*) (\w+)( =[^;]*)?(;|$))");
-  std::map<std::string, std::vector<Field>> structs;
-  for (const auto& file : house::FilesUnder("include/masked_mapper", {".hpp"})) {
-    std::ifstream in(house::Root() / file);
-    std::vector<Field>* fields = nullptr;
-    std::smatch match;
-    for (std::string line; std::getline(in, line);) {
-      if (std::regex_search(line, match, head)) fields = &structs[match[1]];
-      if (line == "};") fields = nullptr;
-      if (fields && std::regex_search(line, match, field)) fields->push_back({match[1], match[2]});
-    }
-  }
-  return structs;
-}
-
-void CollectPaths(const std::map<std::string, std::vector<Field>>& structs, const std::string& type,
-                  const std::string& prefix, std::set<std::string>& paths) {
-  for (const Field& field : structs.at(type)) {
-    if (structs.count(field.type)) {
-      CollectPaths(structs, field.type, prefix + field.name + ".", paths);
-    } else {
-      paths.insert(prefix + field.name);
-    }
-  }
-}
-
-TEST(OptionTable, HoldsEveryFieldOfEveryOptionStructOnce) {
-  std::set<std::string> paths;
-  CollectPaths(FieldsOfOptionStructs(), "Options", "", paths);
-  ASSERT_GT(paths.size(), 30U);
-  // Set by the program from `threads`, or for its own first look at a log; not a user's business.
-  for (const char* inner : {"matcher.threads", "grid.threads", "log.read_ranges"}) {
-    EXPECT_EQ(paths.erase(inner), 1U) << inner;
-  }
+TEST(OptionTable, APersonCanReadIt) {
   Options options;
+  const std::vector<OptionEntry> table = OptionTable(options);
+  EXPECT_LE(table.size(), 45U);
   std::set<std::string> keys;
-  for (const OptionEntry& entry : OptionTable(options)) {
+  for (const OptionEntry& entry : table) {
     EXPECT_TRUE(keys.insert(entry.key).second) << entry.key << " is listed twice";
   }
-  for (const std::string& path : paths) EXPECT_TRUE(keys.count(path)) << "not in table: " << path;
-  for (const std::string& key : keys) EXPECT_TRUE(paths.count(key)) << "no such field: " << key;
 }
 
 TEST(OptionTable, DefaultsAreAllowedAndFieldsAreDistinct) {
@@ -172,7 +129,7 @@ TEST(OptionTable, MistakesAreOneClearLine) {
               "--set: matcher.min_score must be a number, not `" + std::string(bad) + "`");
   }
   EXPECT_NE(MessageOf("candidates.max_matches=99999999999999999999"), "");
-  EXPECT_NE(MessageOf("matcher.table_memory_mib=-1"), "");
+  EXPECT_NE(MessageOf("candidates.max_matches=-1"), "");
   const std::string long_line = MessageOf("a\nb=" + std::string(100000, 'x'));
   EXPECT_EQ(long_line, "--set: unknown option `a?b`");
 }
@@ -194,14 +151,6 @@ TEST(OptionTable, ContradictionsAreNamed) {
     EXPECT_STREQ(error.what(),
                  "nodes.min_edge_length_m (10) must not be above nodes.max_edge_length_m (9)");
   }
-}
-
-TEST(OptionTable, ALocalMapThatFillsTheMemoryIsRefused) {
-  Options options;
-  options.mapping.motion.scans.map.cell_m = 0.01;
-  EXPECT_NO_THROW(CheckOptions(options));
-  options.mapping.motion.scans.map.reach_m = 1000.0;
-  EXPECT_THROW(CheckOptions(options), InputError);
 }
 
 TEST(OptionTable, AFileOfFloorsIsForLabelsOnly) {

@@ -22,10 +22,10 @@ namespace masked_mapper {
 /// scan within half a second of them is meant; poses are [x, y, theta] of `to` in the frame of
 /// `from`, in metres and degrees. Throws InputError that names file and line, and leaves the map as
 /// it was.
-void ApplyEdits(const std::string& path, const LoopClosureOptions& options, MappingResult& map);
+void ApplyEdits(const std::string& path, const LoopClosureOptions& options, BuildingMap& map);
 
 /// The same from text; `name` stands for the file in messages.
 void ApplyEditsText(const std::string& name, const std::string& text,
-                    const LoopClosureOptions& options, MappingResult& map);
+                    const LoopClosureOptions& options, BuildingMap& map);
 
 }  // namespace masked_mapper

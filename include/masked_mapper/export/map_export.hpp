@@ -30,11 +30,11 @@ struct FloorGrid {
 };
 
 /// The grid of one floor, or of all, from all kept scans but those in transit.
-std::vector<FloorGrid> RenderGrids(const MappingResult& result, const GridOptions& options,
+std::vector<FloorGrid> RenderGrids(const BuildingMap& result, const GridOptions& options,
                                    const std::optional<FloorId>& floor);
 
 /// The grid of each floor, by FloorId.
-std::vector<OccupancyGrid> RenderFloors(const MappingResult& result, const GridOptions& options);
+std::vector<OccupancyGrid> RenderFloors(const BuildingMap& result, const GridOptions& options);
 
 /// Files that could not be written; all others are there and whole.
 class ExportError : public std::runtime_error {
@@ -45,13 +45,13 @@ class ExportError : public std::runtime_error {
 };
 
 /// What WriteMap() writes of this map: names below its folder.
-std::vector<std::filesystem::path> ExportedFiles(const MappingResult& result);
+std::vector<std::filesystem::path> ExportedFiles(const BuildingMap& result);
 
 /// Writes all files into `folder`, which exists (OutputFolder). To the seconds of the result those
 /// of rendering and export are added, in the returned summary as in the file. A file that cannot be
 /// written holds up no other, and leaves nothing behind: ExportError in the end names all of them,
 /// as does a warning in the summary. Throws InputError for a label that cannot name a file.
-Summary WriteMap(const MappingResult& result, const RunDescription& run,
-                 const ExportOptions& options, const std::filesystem::path& folder);
+Summary WriteMap(const BuildingMap& result, const RunDescription& run, const ExportOptions& options,
+                 const std::filesystem::path& folder);
 
 }  // namespace masked_mapper

@@ -14,12 +14,12 @@
 namespace masked_mapper {
 
 /// What the page draws, as JSON: floors with their walls and free space (`grids`, by FloorId), some
-/// points of the kept scans up to `max_range_m`, the trajectory, nodes, edges and attempts, each
+/// points of the kept scans up to `max_range_m`, the trajectory, nodes, edges and closures, each
 /// pose before (the motion path, placed so that it starts where the map does) and after
 /// optimisation. Long columns are base64 of little-endian numbers; viewer/src/data.js reads them.
 /// However large the building, walls, free space, scans and trajectory are thinned so that the page
 /// stays below 20 MB. Nothing in it depends on time or threads.
-std::string ReportData(const MappingResult& result, const std::vector<OccupancyGrid>& grids,
+std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGrid>& grids,
                        double max_range_m);
 
 /// The page of `data` (of ReportData) and the summary, which holds all that differs between two

@@ -33,7 +33,7 @@ void CheckSingleExport(const SingleExport& wanted, const std::vector<Floor>& flo
 /// Writes the file; a grid becomes `path` with .pgm and .yaml, in place of either if it ends in it.
 /// Returns the names of what was written. Throws as above, and std::runtime_error when a file
 /// cannot be written.
-std::vector<std::filesystem::path> WriteSingleExport(const MappingResult& result,
+std::vector<std::filesystem::path> WriteSingleExport(const BuildingMap& result,
                                                      const ExportOptions& options,
                                                      const SingleExport& wanted,
                                                      const std::filesystem::path& path);

@@ -60,7 +60,7 @@ struct Summary {
 /// `grids` by FloorId. Seconds are the result's, their total the
 /// sum of the stages unless the result has one; the peak of memory is that of the process up to
 /// now.
-Summary Summarise(const MappingResult& result, const RunDescription& run,
+Summary Summarise(const BuildingMap& result, const RunDescription& run,
                   const std::vector<OccupancyGrid>& grids);
 
 /// As JSON, in a fixed order of keys.

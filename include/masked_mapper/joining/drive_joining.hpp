@@ -17,7 +17,7 @@ namespace masked_mapper {
 /// each may itself hold several drives. One map alone is given back as it is. Where stamps would
 /// step back, a later drive's are shifted by whole seconds, and a warning says so; another says
 /// which drive stays apart, and why. Same result at any number of threads.
-MappingResult JoinDrives(std::vector<MappingResult> maps, const DriveJoinOptions& options,
-                         const LoopClosureOptions& closures, ProgressSink& progress);
+BuildingMap JoinDrives(std::vector<BuildingMap> maps, const DriveJoinOptions& options,
+                       const LoopClosureOptions& closures, ProgressSink& progress);
 
 }  // namespace masked_mapper

@@ -37,7 +37,7 @@ bool HasUnknownFloors(const FloorTimeline& floors);
 /// Offers the scan nodes of each level of unknown identity to those of older levels, other than the
 /// one it was reached from, within `options.reach_m` of where motion puts them.
 /// `map` was made with `floors`, by `closures`.
-FloorJoining JoinFloors(const MappingResult& map, const FloorTimeline& floors,
+FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
                         const FloorJoinOptions& options, const LoopClosureOptions& closures);
 
 }  // namespace masked_mapper

@@ -53,7 +53,7 @@ struct PieceSearchResult {
 /// Drives of the pieces, by place in `map.drives`; pieces have no floor in common. Floors whose
 /// labels were given are one only when they are called alike; others when their heights over each
 /// other allow it, as far as they were measured. Same result at any number of threads.
-PieceSearchResult FindPiece(const MappingResult& map, const std::vector<std::size_t>& older,
+PieceSearchResult FindPiece(const BuildingMap& map, const std::vector<std::size_t>& older,
                             const std::vector<std::size_t>& newer, const DriveJoinOptions& options,
                             const MatcherOptions& matcher);
 

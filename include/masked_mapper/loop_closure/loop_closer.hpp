@@ -6,27 +6,20 @@
 
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/closure_matcher.hpp"
 #include "masked_mapper/loop_closure/open_revisits.hpp"
-#include "masked_mapper/loop_closure/submaps.hpp"
 #include "masked_mapper/loop_closure/validator.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/optimization/closure_audit.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
-#include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
-
-/// When a match is not sure enough to be a closure. A blank corridor matches itself anywhere along
-/// it, and loops of such matches agree with each other. Ours: the paper leaves it to MinScore.
-struct AmbiguityOptions {
-  double max_sigma_m = 0.2;  ///< in the least certain direction
-  double max_sigma_deg = 3.0;
-};
 
 /// Which pairs enter once the whole map is known, matched again from their optimised poses.
 struct PolishOptions {
@@ -53,56 +46,46 @@ class LoopCloser {
   /// What a node is matched against, in its frame.
   using ReferencePoints = std::function<ScanPoints::ConstPtr(NodeId)>;
 
-  /// `map` outlives this; closures that are in it already stay known by their attempts.
-  /// Without `reference`, nodes are matched by their scans.
-  LoopCloser(const LoopClosureOptions& options, MappingResult& map, ReferencePoints reference = {});
+  /// `map` outlives this. Without `reference`, nodes are matched by their scans.
+  LoopCloser(const LoopClosureOptions& options, BuildingMap& map, ReferencePoints reference = {});
 
   /// Offers a node to its candidates. What is validated by it becomes edges, and the graph is
   /// solved. Returns how many.
   std::size_t Close(NodeId new_node, const std::vector<Candidate>& candidates);
 
-  /// Writes the votes of so far into the attempts.
-  void NoteVotes();
-
   /// Ends the map's graph: late closures enter, those that disagree go. Only of a map that hangs
   /// together where late closures are to be believed.
   void Finish();
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp); after the map's attempts.
+  /// The state, for a checkpoint (mapping/state_archive.hpp); after the map's closures.
   template <class Archive>
   void Serialize(Archive& archive) {
-    archive(validator_, optimizer_, attempt_of_hypothesis_, attempt_of_edge_);
-    if constexpr (Archive::kReads) {
-      if (!HoldsTogether()) archive.Refuse("closures that do not hold together");
-    }
+    validator_.Serialize(archive, map_.closures);
+    archive(optimizer_);
   }
 
  private:
-  std::vector<Hypothesis> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
-  bool RefineMatch(ClosureAttempt& attempt);
-  void AddValidated(const std::vector<HypothesisId>& validated);
-  void Polish();
+  std::vector<ClosureId> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  void Solve();
+  void CloseLate();
+  void CloseOpenVotes();
   void CloseOpenRevisits();
-  bool CloseRevisit(NodeId a, NodeId b);
-  bool CanBeOne(const ClosureAttempt& attempt) const;
-  bool IsForbidden(NodeId one, NodeId other) const;
-  bool FitsTheMap(const ClosureAttempt& attempt) const;
+  bool CloseRevisit(NodeId newer, NodeId older);
+  bool CanBeOne(const Closure& closure) const;
+  bool FitsTheMap(const Closure& closure) const;
   Pose2 MapBetween(NodeId from, NodeId to) const;
   std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
-  void EnterLate(std::size_t place, ClosureAttempt& attempt);
+  void EnterLate(ClosureId id);
   void Audit();
-  bool HoldsTogether() const;
 
   const LoopClosureOptions& options_;
-  MappingResult& map_;
+  BuildingMap& map_;
   ReferencePoints reference_;
-  JointMatcher matcher_;
-  JointMatcher late_matcher_;  ///< its references are other points of the same nodes
-  Submaps submaps_;
+  ClosureMatcher matcher_;
+  ClosureMatcher late_matcher_;  ///< its references are other points of the same nodes
   LoopValidator validator_;
   PoseGraphOptimizer optimizer_;
-  std::vector<std::size_t> attempt_of_hypothesis_;
-  std::map<EdgeId, std::size_t> attempt_of_edge_;  ///< of closures
+  std::set<std::pair<NodeId, NodeId>> forbidden_;  ///< older, newer; by hand
 };
 
 }  // namespace masked_mapper

@@ -8,32 +8,17 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/map/closure.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 
 namespace masked_mapper {
 
-using HypothesisId = std::int32_t;
-
-struct Hypothesis {
-  NodeId a = 0;  ///< the newer node
-  NodeId b = 0;
-  UncertainPose2 T_a_b;
-  int votes = 0;
-  bool validated = false;
-
-  /// For a checkpoint (mapping/state_archive.hpp).
-  template <class Archive>
-  void Serialize(Archive& archive) {
-    archive(a, b, T_a_b, votes, validated);
-  }
-};
-
 /// One edge of a path, as walked.
 struct PathStep {
-  EdgeId edge = -1;              ///< of the graph, or
-  HypothesisId hypothesis = -1;  ///< a closure that is not in the graph
-  NodeId to = 0;                 ///< where the step ends
-  int ways = 0;                  ///< how many nodes of the search led to `to` before it was settled
+  EdgeId edge = -1;        ///< of the graph, or
+  ClosureId closure = -1;  ///< a closure that is not in the graph
+  NodeId to = 0;           ///< where the step ends
+  int ways = 0;            ///< how many nodes of the search led to `to` before it was settled
 };
 
 struct LeastErrorPath {
@@ -47,11 +32,11 @@ class RemovedSteps {
  public:
   void Add(const PathStep& step);
   bool HoldsEdge(EdgeId id) const;
-  bool HoldsHypothesis(HypothesisId id) const;
+  bool HoldsClosure(ClosureId id) const;
 
  private:
   std::vector<EdgeId> edges_;
-  std::vector<HypothesisId> hypotheses_;
+  std::vector<ClosureId> closures_;
 };
 
 /// Dijkstra over (number of unvalidated closures, trace of the covariance), in this order, so that
@@ -60,25 +45,25 @@ class RemovedSteps {
 /// reach it. Costs what the nodes within `max_trace` cost, whatever the size of the map.
 class LoopSearch {
  public:
-  /// Makes a hypothesis an edge of the search: one more unvalidated closure, or a validated one
-  /// that the graph does not hold yet. Ids are places in the list that is given to Find().
-  void Add(HypothesisId id, const Hypothesis& hypothesis);
+  /// Makes a closure an edge of the search: one more unvalidated one, or a validated one that the
+  /// graph does not hold yet. Ids are places in the list that is given to Find().
+  void Add(ClosureId id, const Closure& closure);
   /// Takes it out for good, once the graph holds it.
-  void Drop(HypothesisId id, const Hypothesis& hypothesis);
+  void Drop(ClosureId id, const Closure& closure);
 
   /// Empty when every way is removed, or has a trace (m^2 and rad^2, Eq. 2) above `max_trace`.
-  std::optional<LeastErrorPath> Find(const PoseGraph& graph,
-                                     const std::vector<Hypothesis>& hypotheses, NodeId from,
-                                     NodeId to, double max_trace, const RemovedSteps& removed);
+  std::optional<LeastErrorPath> Find(const PoseGraph& graph, const std::vector<Closure>& closures,
+                                     NodeId from, NodeId to, double max_trace,
+                                     const RemovedSteps& removed);
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp); `hypotheses` as given to Find().
+  /// The state, for a checkpoint (mapping/state_archive.hpp); `closures` as given to Find().
   template <class Archive>
-  void Serialize(Archive& archive, const std::vector<Hypothesis>& hypotheses) {
-    archive(hypotheses_of_);
-    for (const std::vector<HypothesisId>& ids : hypotheses_of_) {
-      for (const HypothesisId id : ids) {
-        if (id < 0 || static_cast<std::size_t>(id) >= hypotheses.size()) {
-          archive.Refuse("a search for hypotheses that there are not");
+  void Serialize(Archive& archive, const std::vector<Closure>& closures) {
+    archive(closures_of_);
+    for (const std::vector<ClosureId>& ids : closures_of_) {
+      for (const ClosureId id : ids) {
+        if (id < 0 || static_cast<std::size_t>(id) >= closures.size()) {
+          archive.Refuse("a search for closures that there are not");
         }
       }
     }
@@ -91,7 +76,7 @@ class LoopSearch {
     int unvalidated = 0;
     int ways = 0;
     EdgeId edge = -1;
-    HypothesisId hypothesis = -1;
+    ClosureId closure = -1;
     NodeId parent = -1;
     bool settled = false;
     UncertainPose2 T_from_node;
@@ -99,8 +84,8 @@ class LoopSearch {
 
   Reached& At(NodeId node);
 
-  std::vector<std::vector<HypothesisId>> hypotheses_of_;  // by node
-  std::vector<Reached> reached_;                          // by node
+  std::vector<std::vector<ClosureId>> closures_of_;  // by node
+  std::vector<Reached> reached_;                     // by node
   std::int64_t search_ = 0;
 };
 

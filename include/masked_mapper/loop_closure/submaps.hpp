@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 
 namespace masked_mapper {
@@ -36,9 +37,9 @@ struct SubmapMatch {
 
 class Submaps {
  public:
-  /// `result` is the map in the making; it outlives this.
-  Submaps(const SubmapOptions& options, const MappingResult& result)
-      : options_(options), result_(result) {}
+  /// `building` is the map in the making; it outlives this.
+  Submaps(const SubmapOptions& options, const BuildingMap& building)
+      : options_(options), building_(building) {}
 
   /// The pose of a scan in the frame of `node`, from a coarse match. Empty when the scan does not
   /// fit the node's surroundings.
@@ -55,11 +56,12 @@ class Submaps {
 
  private:
   const LocalMap& SubmapOf(NodeId node);
-  std::vector<LocalMap::PosedPoints> ScansAround(NodeId node) const;
+  SurroundingsOptions Surroundings() const { return {options_.half_length_m}; }
   LocalMap Build(NodeId node) const;
+  bool IsComplete(NodeId node) const;
 
   SubmapOptions options_;
-  const MappingResult& result_;
+  const BuildingMap& building_;
   std::list<NodeId> recently_used_;  ///< most recent first
   struct Entry {
     LocalMap map;

@@ -57,30 +57,28 @@ class LoopValidator {
  public:
   explicit LoopValidator(const ValidatorOptions& options);
 
-  /// Adds matches as hypotheses and judges each, over the graph's odometry, floor-change and
-  /// validated closure edges and over the other hypotheses. Returns the hypotheses that became
-  /// valid by this call (the new ones or older ones that got their last vote), in order of ids. The
-  /// caller adds their edges to the graph before the next call. Ends of a match must be nodes of
-  /// the graph, and differ.
-  std::vector<HypothesisId> Judge(const PoseGraph& graph, const std::vector<Hypothesis>& matches);
+  /// Judges matches, ids of `closures` that are hypotheses there, over the graph's odometry,
+  /// floor-change and validated closure edges and over the hypotheses judged before. Counts votes;
+  /// closures that became valid by this call (of `matches`, or older ones that got their last vote)
+  /// are so in `closures`, and returned in order of ids. The caller adds their edges to the graph
+  /// before the next call.
+  std::vector<ClosureId> Judge(const PoseGraph& graph, const std::vector<ClosureId>& matches,
+                               std::vector<Closure>& closures);
 
-  const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
-
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (mapping/state_archive.hpp); `closures` as given to Judge().
   template <class Archive>
-  void Serialize(Archive& archive) {
-    archive(hypotheses_, standings_, waiting_, ties_);
-    search_.Serialize(archive, hypotheses_);
-    if (standings_.size() != hypotheses_.size()) archive.Refuse("standings of no hypotheses");
-    for (const HypothesisId id : waiting_) {
-      if (id < 0 || static_cast<std::size_t>(id) >= hypotheses_.size()) {
-        archive.Refuse("a waiting hypothesis that there is not");
-      }
+  void Serialize(Archive& archive, const std::vector<Closure>& closures) {
+    archive(standings_, waiting_, ties_);
+    search_.Serialize(archive, closures);
+    bool holds = standings_.size() <= closures.size();
+    for (const ClosureId id : waiting_) {
+      holds = holds && id >= 0 && static_cast<std::size_t>(id) < standings_.size();
     }
+    if (!holds) archive.Refuse("standings of closures that there are not");
   }
 
  private:
-  // What is known of a hypothesis beside its votes.
+  // What is known of a closure beside its votes.
   struct Standing {
     int loose_votes = 0;
     std::vector<NodeId> places;  // newer ends of it and of those that agree with it, far apart
@@ -94,18 +92,19 @@ class LoopValidator {
     }
   };
 
-  void JudgeOne(const PoseGraph& graph, HypothesisId id);
-  void CountLoop(const PoseGraph& graph, const std::vector<HypothesisId>& agreeing, bool tight);
-  void Admit(const PoseGraph& graph, HypothesisId id);
-  bool MayEnter(const PoseGraph& graph, HypothesisId id);
+  void JudgeOne(const PoseGraph& graph, ClosureId id, std::vector<Closure>& closures);
+  void CountLoop(const PoseGraph& graph, const std::vector<ClosureId>& agreeing, bool tight,
+                 std::vector<Closure>& closures);
+  void Admit(const PoseGraph& graph, ClosureId id, std::vector<Closure>& closures);
+  bool MayEnter(const PoseGraph& graph, ClosureId id, const std::vector<Closure>& closures);
+  Standing& StandingOf(ClosureId id) { return standings_[static_cast<std::size_t>(id)]; }
 
   ValidatorOptions options_;
-  std::vector<Hypothesis> hypotheses_;
-  std::vector<Standing> standings_;    // of the hypotheses
-  std::vector<HypothesisId> waiting_;  // enough votes, not admitted yet
+  std::vector<Standing> standings_;  // of the closures, up to the last that was judged
+  std::vector<ClosureId> waiting_;   // enough votes, not admitted yet
   LoopSearch search_;
   int ties_ = 0;  // closures admitted without a sure way: each makes new sure ways
-  std::vector<HypothesisId> newly_valid_;  // of the running call
+  std::vector<ClosureId> newly_valid_;  // of the running call
 };
 
 }  // namespace masked_mapper

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/map/closure.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/sensor/motion_source.hpp"
@@ -25,28 +26,8 @@ struct TrajectoryPose {
 
 /// A scan kept for rendering (thinned by travelled distance).
 struct KeptScan {
-  std::size_t trajectory_index = 0;  ///< its pose in MappingResult::trajectory
+  std::size_t trajectory_index = 0;  ///< its pose in BuildingMap::trajectory
   LaserScan scan;
-};
-
-/// The reason of an attempt whose closure was forbidden; what grows the map later heeds it.
-constexpr const char* kForbiddenByHand = "forbidden by hand";
-/// And of one that was added: no audit takes it out.
-constexpr const char* kAddedByHand = "added by hand";
-
-enum class ClosureState { kRejectedScore, kHypothesis, kValidated, kAuditedOut };
-
-/// One pair that was offered to the matcher; a line of closures.csv.
-struct ClosureAttempt {
-  NodeId a = 0;  ///< the newer node
-  NodeId b = 0;
-  UncertainPose2 T_a_b;  ///< the match; the guess if there is none
-  double score = 0.0;
-  double mahalanobis = 0.0;  ///< of the candidate, Eq. 7
-  double agreement = 0.0;  ///< share of a's points that fit the submap of b, 0-1; 0: not looked at
-  int votes = 0;
-  ClosureState state = ClosureState::kRejectedScore;
-  std::string reason;
 };
 
 struct StageSeconds {
@@ -60,23 +41,25 @@ struct StageSeconds {
   double rendering = 0.0;
   double export_ = 0.0;
   double total = 0.0;
+
+  StageSeconds& operator+=(const StageSeconds& more);
 };
 
 /// One log's part of a map: scans, nodes and poses of a drive stand together (map/drives.hpp).
 struct Drive {
   std::string log;             ///< path as given
-  std::size_t first_pose = 0;  ///< in MappingResult::trajectory
+  std::size_t first_pose = 0;  ///< in BuildingMap::trajectory
   NodeId first_node = 0;
   double stamp_offset_s = 0.0;  ///< was added to the log's stamps, which must not step back
   MotionSource motion_source = MotionSource::kFused;  ///< the one that was used
   std::string reason;  ///< of a drive that was to join others: why it did, or did not
 };
 
-struct MappingResult {
+struct BuildingMap {
   PoseGraph graph;
   std::vector<TrajectoryPose> trajectory;  ///< one per scan of the logs, in order
   std::vector<KeptScan> kept_scans;        ///< in order
-  std::vector<ClosureAttempt> attempts;    ///< in order of offering
+  std::vector<Closure> closures;           ///< every pair that was offered, in order
   std::vector<Drive> drives;               ///< in order; of one log: one
   LogStatistics log;
   MotionSource motion_source = MotionSource::kFused;  ///< that of the first drive

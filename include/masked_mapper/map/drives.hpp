@@ -11,21 +11,21 @@
 
 namespace masked_mapper {
 
-/// Drives, by place in MappingResult::drives.
-std::size_t DriveOfNode(const MappingResult& map, NodeId node);
-std::size_t DriveOfPose(const MappingResult& map, std::size_t trajectory_index);
+/// Drives, by place in BuildingMap::drives.
+std::size_t DriveOfNode(const BuildingMap& map, NodeId node);
+std::size_t DriveOfPose(const BuildingMap& map, std::size_t trajectory_index);
 
 /// First and behind-the-last.
 struct IndexRange {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
-IndexRange NodesOfDrive(const MappingResult& map, std::size_t drive);
-IndexRange PosesOfDrive(const MappingResult& map, std::size_t drive);
+IndexRange NodesOfDrive(const BuildingMap& map, std::size_t drive);
+IndexRange PosesOfDrive(const BuildingMap& map, std::size_t drive);
 
 /// The piece of every drive: the first drive's is 0, each new one counts on. Drives are in one
 /// piece when closures tie them.
-std::vector<std::size_t> PiecesOfDrives(const MappingResult& map);
+std::vector<std::size_t> PiecesOfDrives(const BuildingMap& map);
 
 /// What people want to know of a drive.
 struct DriveFacts {
@@ -40,6 +40,9 @@ struct DriveFacts {
   std::vector<std::string> floors;     ///< labels, in order of first visit
 };
 /// One for each drive.
-std::vector<DriveFacts> FactsOfDrives(const MappingResult& map);
+std::vector<DriveFacts> FactsOfDrives(const BuildingMap& map);
+
+/// The map's warnings, and one for each piece that stays apart.
+std::vector<std::string> WarningsOf(const BuildingMap& map);
 
 }  // namespace masked_mapper

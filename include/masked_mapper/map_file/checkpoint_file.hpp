@@ -29,7 +29,7 @@ class CheckpointFile : public CheckpointStore {
 
   std::optional<Checkpoint> Load() override;
   bool IsDue() override;
-  void Save(const CheckpointState& state, const MappingResult& map) override;
+  void Save(const CheckpointState& state, const BuildingMap& map) override;
   void StartOver() override;
 
   /// Whether Load() found or Save() left something to go on from.

@@ -20,10 +20,10 @@ class FinishedDrives {
 
   /// Empty when the drive is not finished. Throws InputError when it is, but of other logs or
   /// options, or damaged.
-  std::optional<MappingResult> Load(std::size_t drive);
+  std::optional<BuildingMap> Load(std::size_t drive);
   /// Keeps it, whole or not at all, and removes the drive's checkpoint. Throws std::exception when
   /// it cannot be written.
-  void Save(std::size_t drive, const MappingResult& result);
+  void Save(std::size_t drive, const BuildingMap& result);
   /// How many were loaded or saved.
   std::size_t count() const { return count_; }
   /// Removes them, with all checkpoints.

@@ -11,7 +11,7 @@ namespace masked_mapper {
 
 /// Writes the file, which must not exist. The same map gives the same bytes. Throws
 /// std::runtime_error when it cannot be written.
-void WriteMapFile(const MapOrigin& origin, const MappingResult& result,
+void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
                   const std::filesystem::path& path);
 
 }  // namespace masked_mapper

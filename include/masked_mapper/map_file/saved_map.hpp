@@ -29,7 +29,7 @@ struct MapOrigin {
 
 struct SavedMap {
   MapOrigin origin;
-  MappingResult result;  ///< without its seconds, in which two runs differ
+  BuildingMap result;  ///< without its seconds, in which two runs differ
   /// What of the file was not understood and left aside, one line each, for people.
   std::vector<std::string> left_aside = {};
 };

@@ -26,7 +26,6 @@ struct CheckpointState {
 struct GrownParts {
   std::vector<TrajectoryPose> trajectory;
   std::vector<KeptScan> kept_scans;
-  std::vector<ScanPoints::ConstPtr> points_of_nodes;  ///< null for odometry-only nodes
 };
 
 struct Checkpoint {
@@ -45,7 +44,7 @@ class CheckpointStore {
   /// Keeps the state, and of `map` those of the grown parts that it does not have yet; the ones
   /// before stay good until all of it is kept. Throws std::runtime_error when that fails: mapping
   /// then goes on without checkpoints.
-  virtual void Save(const CheckpointState& state, const MappingResult& map) = 0;
+  virtual void Save(const CheckpointState& state, const BuildingMap& map) = 0;
   /// Mapping begins anew: the next Save() replaces all that is kept.
   virtual void StartOver() = 0;
 };
@@ -53,10 +52,8 @@ class CheckpointStore {
 /// A run of grown parts as bytes, and back. A damaged one throws StateError.
 std::string PackPoses(const std::vector<TrajectoryPose>& poses, std::size_t first);
 std::string PackScans(const std::vector<KeptScan>& scans, std::size_t first);
-std::string PackPoints(const std::vector<Node>& nodes, std::size_t first);
 void AppendPoses(const std::string& bytes, GrownParts& parts);
 void AppendScans(const std::string& bytes, GrownParts& parts);
-void AppendPoints(const std::string& bytes, GrownParts& parts);
 
 /// What was found out about the log before mapping, as bytes, and back.
 std::string PackSurvey(const LogSurvey& survey);

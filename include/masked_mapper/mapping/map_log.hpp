@@ -15,8 +15,7 @@ namespace masked_mapper {
 /// no scan, a mask expression that is none. With `checkpoints`, goes on from the one in store, if
 /// there is one of the same log, mask and options, and keeps others on the way; also one when
 /// `progress` throws. The map is the same with and without; its seconds are those of this run.
-MappingResult MapLog(const std::string& path, const std::string& mask,
-                     const MappingOptions& options, ProgressSink& progress,
-                     CheckpointStore* checkpoints = nullptr);
+BuildingMap MapLog(const std::string& path, const std::string& mask, const MappingOptions& options,
+                   ProgressSink& progress, CheckpointStore* checkpoints = nullptr);
 
 }  // namespace masked_mapper

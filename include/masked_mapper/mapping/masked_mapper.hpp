@@ -26,9 +26,9 @@ class MaskedMapper {
   void Observe(const Observation& observation);
 
   /// Ends the map: every scan gets its pose. The mapper is spent afterwards.
-  MappingResult Finish();
+  BuildingMap Finish();
 
-  const MappingResult& result() const { return result_; }
+  const BuildingMap& result() const { return result_; }
 
   // For checkpoints; all of this stands in checkpoint.cpp.
   /// Everything that the observations so far left behind, but for the parts that only grow and for
@@ -45,17 +45,20 @@ class MaskedMapper {
   void SerializeState(Archive& archive);
   void ObserveScan(const LaserScan& scan);
   void ChangeFloor(const FloorInterval& interval, double stamp);
-  NodeId AddNode(double stamp, FloorId floor, ScanPoints::ConstPtr points_in_robot, EdgeKind kind);
+  NodeId AddNode(double stamp, FloorId floor, EdgeKind kind, KeptScanId scan = -1);
+  KeptScanId Keep(const LaserScan& scan);
   /// The cab's walls ride along: scans against them err once, not with every turn in it.
   UncertainPose2 RideInCab(const UncertainPose2& motion) const;
   void CloseLoops(NodeId new_node);
-  void RecordScan(const LaserScan& scan, const FloorInterval& interval);
+  void RecordPose(const LaserScan& scan, const FloorInterval& interval);
+  bool IsNextKept() const;
+  bool IsDueToBeKept(const FloorInterval& interval) const;
 
   MappingOptions options_;
   const FloorTimeline& floors_;
   MotionEstimator motion_;
   std::unique_ptr<Mask> mask_;
-  MappingResult result_;
+  BuildingMap result_;
   LoopCloser closer_;  ///< works on result_
 
   std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 
-using NodeId = std::int32_t;   ///< place in PoseGraph::nodes()
-using EdgeId = std::int32_t;   ///< place in PoseGraph::edges()
-using FloorId = std::int32_t;  ///< place in PoseGraph::floors(), in order of first visit
+using NodeId = std::int32_t;      ///< place in PoseGraph::nodes()
+using EdgeId = std::int32_t;      ///< place in PoseGraph::edges()
+using FloorId = std::int32_t;     ///< place in PoseGraph::floors(), in order of first visit
+using KeptScanId = std::int32_t;  ///< place in the map's list of kept scans
+using ClosureId = std::int32_t;   ///< place in the map's list of closures
 
 struct Floor {
   std::string label;
@@ -27,11 +28,11 @@ struct Floor {
 struct Node {
   double stamp = 0.0;  ///< s
   FloorId floor = 0;
-  Pose2 T_odom_robot;                    ///< where motion put the robot
-  ScanPoints::ConstPtr points_in_robot;  ///< null for an odometry-only node
-  Pose2 T_world_robot;                   ///< optimised
+  Pose2 T_odom_robot;    ///< where motion put the robot
+  Pose2 T_world_robot;   ///< optimised
+  KeptScanId scan = -1;  ///< its scan; -1: an odometry-only node
 
-  bool HasScan() const { return points_in_robot != nullptr; }
+  bool HasScan() const { return scan >= 0; }
 };
 
 enum class EdgeKind { kOdometry, kFloorChange, kClosure };
@@ -41,6 +42,7 @@ struct Edge {
   NodeId to = 0;
   UncertainPose2 T_from_to;
   EdgeKind kind = EdgeKind::kOdometry;
+  ClosureId closure = -1;  ///< the record of a closure; -1: none, or no closure
 };
 
 class PoseGraph {
@@ -50,10 +52,14 @@ class PoseGraph {
   NodeId AddNode(Node node);
   /// Both ends must exist and differ; a closure joins nodes of one floor only. Violations are bugs.
   EdgeId AddEdge(Edge edge);
-  /// Takes the edge out of nodes' edge lists and of edges(); ids of later edges shift down by one.
-  void RemoveEdge(EdgeId edge);
+  /// Takes edges out, given in order of their ids; those that stay close the gaps.
+  void RemoveEdges(const std::vector<EdgeId>& edges);
+  void RemoveEdge(EdgeId edge) { RemoveEdges({edge}); }
 
   const std::vector<Node>& nodes() const { return nodes_; }
+  const Node& node(NodeId id) const { return nodes_[static_cast<std::size_t>(id)]; }
+  const Edge& edge(EdgeId id) const { return edges_[static_cast<std::size_t>(id)]; }
+  const Floor& floor(FloorId id) const { return floors_[static_cast<std::size_t>(id)]; }
   const std::vector<Edge>& edges() const { return edges_; }
   const std::vector<Floor>& floors() const { return floors_; }
   /// Edges that touch a node, in order of their ids.
@@ -66,11 +72,19 @@ class PoseGraph {
   }
   void SetElevation(FloorId floor, double elevation, double sigma, bool measured);
 
+  // A graph whose frame, clock or floors turn out to be others; what was measured stays.
+  /// The same nodes on these floors; `floor_of_node` has one for each. Ends of a closure must stay
+  /// on one floor.
+  void Refloor(std::vector<Floor> floors, const std::vector<FloorId>& floor_of_node);
+  /// The node, and the motion path at it, in another frame.
+  void MoveNode(NodeId node, const Pose2& T_to_from);
+  void ShiftStamps(double seconds);
+
  private:
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
   std::vector<Floor> floors_;
-  std::vector<std::vector<EdgeId>> edges_of_;
+  std::vector<std::vector<EdgeId>> edges_of_;  ///< by node
 };
 
 /// The view of one floor: its nodes, and the edges with both ends on it, in order of ids.

@@ -44,4 +44,12 @@ struct LaserScan {
 /// The hits of a scan as points in the robot frame, in beam order; never null.
 ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan);
 
+/// Appends the points of b, those within `max_range_m` of its origin, as points in a.
+void AppendTransformed(const ScanPoints& points_in_b, const Pose2& T_a_b, double max_range_m,
+                       ScanPoints& points_in_a);
+/// All points of b as points in a; never null.
+ScanPoints::Ptr Transformed(const ScanPoints& points_in_b, const Pose2& T_a_b);
+/// Points as a cloud of the scan's point type.
+ScanPoints::Ptr AsScanPoints(const std::vector<Eigen::Vector2d>& points);
+
 }  // namespace masked_mapper

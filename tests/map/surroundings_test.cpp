@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map/stretch.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@ namespace masked_mapper {
 namespace {
 
 /// A scan every half metre along x, each of one point a metre ahead; two drives, two floors.
-MappingResult Line() {
-  MappingResult map;
+BuildingMap Line() {
+  BuildingMap map;
   map.graph.AddFloor({"0"});
   map.graph.AddFloor({"1"});
   for (int i = 0; i < 20; ++i) {
@@ -36,8 +36,9 @@ MappingResult Line() {
   return map;
 }
 
-TEST(Stretch, GoesAsFarAsAskedInTheNodesFrame) {
-  const ScanPoints::Ptr points = StretchAround(Line(), 0, 1.0, 30.0);
+TEST(Surroundings, GoesAsFarAsAskedInTheNodesFrame) {
+  const ScanPoints::Ptr points =
+      PointsAround(Line(), 0, {1.0, 0.5, LaidOutBy::kOptimisation}, 30.0);
   ASSERT_EQ(points->size(), 5U);
   float least = 9.0F;
   float most = -9.0F;
@@ -50,9 +51,11 @@ TEST(Stretch, GoesAsFarAsAskedInTheNodesFrame) {
   EXPECT_FLOAT_EQ(most, 2.0F);
 }
 
-TEST(Stretch, EndsWithTheFloorAndTheDrive) {
-  EXPECT_EQ(StretchAround(Line(), 0, 100.0, 30.0)->size(), 12U) << "scans 3 to 14";
-  EXPECT_TRUE(StretchAround(Line(), 0, 100.0, 0.5)->empty()) << "all points are farther";
+TEST(Surroundings, EndsWithTheFloorAndTheDrive) {
+  EXPECT_EQ(PointsAround(Line(), 0, {100.0, 0.5, LaidOutBy::kOptimisation}, 30.0)->size(), 12U)
+      << "scans 3 to 14";
+  EXPECT_TRUE(PointsAround(Line(), 0, {100.0, 0.5, LaidOutBy::kOptimisation}, 0.5)->empty())
+      << "all points are farther";
 }
 
 }  // namespace

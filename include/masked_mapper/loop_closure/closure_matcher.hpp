@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a pair of nodes becomes a closure that may be judged, in four stages:
+//   1. coarse   joint scan matching over the window of the guess (Section III-D)
+//   2. threshold   MinScore
+//   3. refine   against what was seen around the older node, below the size of a cell (ours)
+//   4. believe   only what leaves no direction open (ours)
+#pragma once
+
+#include <vector>
+
+#include "masked_mapper/loop_closure/submaps.hpp"
+#include "masked_mapper/map/closure.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
+
+namespace masked_mapper {
+
+/// When a match is not sure enough to be a closure. A blank corridor matches itself anywhere along
+/// it, and loops of such matches agree with each other. Ours: the paper leaves it to MinScore.
+struct AmbiguityOptions {
+  double max_sigma_m = 0.2;  ///< in the least certain direction
+  double max_sigma_deg = 3.0;
+};
+
+/// A pair to be matched.
+struct ClosureOffer {
+  NodeId older = 0;
+  NodeId newer = 0;
+  UncertainPose2 T_older_newer;  ///< the guess
+  double mahalanobis = 0.0;      ///< Eq. 7
+  ScanPoints::ConstPtr points_in_older;
+  ScanPoints::ConstPtr points_in_newer;
+};
+
+/// What the guess of an offer is worth.
+enum class GuessIs {
+  kAWindow,        ///< where to search; the match stands for itself
+  kAsGoodAsAMatch  ///< from an optimised map: it is refined itself, and may tell along a corridor
+};
+
+class ClosureMatcher {
+ public:
+  /// `map` outlives this. Without `refine`, stage 3 is left out: wheels alone lay out no submaps.
+  ClosureMatcher(const MatcherOptions& matcher, const SubmapOptions& submaps,
+                 const AmbiguityOptions& ambiguity, bool refine, const BuildingMap& map);
+
+  /// One closure for each offer, in their order: kTooFewVotes where it passed all stages, else why
+  /// it did not.
+  std::vector<Closure> Match(const std::vector<ClosureOffer>& offers, GuessIs guess);
+
+  /// Stages 3 and 4 alone, from `closure.T_older_newer`, which they change.
+  void RefineAndBelieve(const ScanPoints& points_in_newer, Closure& closure);
+
+  const Submaps& submaps() const { return submaps_; }
+
+ private:
+  void Believe(const Eigen::Matrix3d& covariance, Closure& closure) const;
+
+  AmbiguityOptions ambiguity_;
+  bool refine_;
+  JointMatcher matcher_;
+  Submaps submaps_;
+};
+
+}  // namespace masked_mapper
