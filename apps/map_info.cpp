@@ -48,7 +48,7 @@ MapFacts FactsOf(const std::string& out_or_map) {
     facts.path_length_m += Distance(trajectory[i - 1].T_world_robot, trajectory[i].T_world_robot);
   }
   facts.kept_scans = result.kept_scans.size();
-  facts.edges = {{"odometry", 0}, {"floor_change", 0}, {"closure", 0}};
+  for (const char* kind : NamesOf(EdgeKind{})) facts.edges.emplace_back(kind, 0);
   for (const Edge& edge : result.graph.edges()) {
     ++facts.edges[static_cast<std::size_t>(edge.kind)].second;
   }

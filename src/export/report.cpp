@@ -313,19 +313,6 @@ Json NodesJson(const std::vector<Node>& nodes, const Pose2& T_world_odom) {
   return json;
 }
 
-std::string KindName(EdgeKind kind) {
-  switch (kind) {
-    case EdgeKind::kOdometry:
-      return "odometry";
-    case EdgeKind::kFloorChange:
-      return "floor_change";
-    case EdgeKind::kClosure:
-      return "closure";
-  }
-  assert(false);
-  return "";
-}
-
 Json EdgesJson(const std::vector<Edge>& edges) {
   std::vector<std::int32_t> from;
   std::vector<std::int32_t> to;
@@ -335,12 +322,8 @@ Json EdgesJson(const std::vector<Edge>& edges) {
     to.push_back(edge.to);
     kinds.push_back(static_cast<std::uint8_t>(edge.kind));
   }
-  Json names = Json::array();
-  for (const EdgeKind kind : {EdgeKind::kOdometry, EdgeKind::kFloorChange, EdgeKind::kClosure}) {
-    names.push_back(KindName(kind));
-  }
   return {{"count", edges.size()},
-          {"kinds", names},
+          {"kinds", NamesOf(EdgeKind{})},
           {"from_i32", Base64(from)},
           {"to_i32", Base64(to)},
           {"kind_u8", Base64(kinds)}};

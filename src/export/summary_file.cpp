@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "masked_mapper/export/output_file.hpp"
+#include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
@@ -61,20 +62,6 @@ Summary::Counts CountsOf(const BuildingMap& result) {
   counts.validated =
       closures_with([](ClosureState state) { return state == ClosureState::kValidated; });
   return counts;
-}
-
-std::string MotionName(MotionSource source) {
-  switch (source) {
-    case MotionSource::kAuto:
-      return "auto";
-    case MotionSource::kOdometry:
-      return "odometry";
-    case MotionSource::kScans:
-      return "scans";
-    case MotionSource::kFused:
-      return "fused";
-  }
-  return "";
 }
 
 // The stages follow each other, so that they add up to the whole.
@@ -168,7 +155,7 @@ Summary Summarise(const BuildingMap& result, const RunDescription& run,
                               nodes, KnownArea(grids.at(i))});
   }
   summary.rejections = RejectionsOf(result.closures);
-  summary.motion_source = MotionName(result.motion_source);
+  summary.motion_source = Name(result.motion_source);
   summary.seconds = WithTotal(result.seconds);
   summary.peak_memory_mib = PeakMemoryMib();
   summary.warnings = WarningsOf(result);

@@ -17,6 +17,7 @@
 #include "masked_mapper/geometry/covariance.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
@@ -109,19 +110,11 @@ class Reader {
     return TakeBelow(row, 2, table, "the flag") == 1;
   }
 
-  template <typename Enumeration, std::size_t kSize>
-  static Enumeration TakeName(Statement& row, const std::array<const char*, kSize>& names,
-                              const std::string& table) {
-    return NameValue<Enumeration>(row.Text(), names, table);
-  }
-
-  template <typename Enumeration, std::size_t kSize>
-  static Enumeration NameValue(std::string_view name, const std::array<const char*, kSize>& names,
-                               const std::string& table) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (name == names[i]) return static_cast<Enumeration>(i);
-    }
-    Malformed(table, "an unknown name");
+  template <typename Enum>
+  static Enum ValueNamed(std::string_view name, const std::string& table) {
+    const std::optional<Enum> value = FromName<Enum>(name);
+    if (!value) Malformed(table, "an unknown name");
+    return *value;
   }
 
   // The bytes of `count` records of `width` bytes, of the three columns count, bytes and checksum.
@@ -168,8 +161,7 @@ class Reader {
       if (later == values.end()) break;
       map_.origin.later_logs.push_back({later->second, values["floors." + std::to_string(number)]});
     }
-    map_.result.motion_source =
-        NameValue<MotionSource>(values["motion_source"], kMotionSources, "run");
+    map_.result.motion_source = ValueNamed<MotionSource>(values["motion_source"], "run");
   }
 
   void ReadLog() {
@@ -240,7 +232,7 @@ class Reader {
       Edge edge;
       edge.from = static_cast<NodeId>(TakeBelow(rows, nodes, "edges", "the node"));
       edge.to = static_cast<NodeId>(TakeBelow(rows, nodes, "edges", "the node"));
-      edge.kind = TakeName<EdgeKind>(rows, kEdgeKinds, "edges");
+      edge.kind = ValueNamed<EdgeKind>(rows.Text(), "edges");
       edge.T_from_to.mean = TakePose(rows, "edges");
       edge.T_from_to.covariance = TakeCovariance(rows, "edges");
       const bool same_floor = graph.nodes()[static_cast<std::size_t>(edge.from)].floor ==
@@ -429,7 +421,7 @@ class Reader {
       drive.first_node =
           static_cast<NodeId>(TakeBelow(rows, map.graph.nodes().size(), "drives", "the node"));
       drive.stamp_offset_s = Finite(rows, "drives");
-      drive.motion_source = TakeName<MotionSource>(rows, kMotionSources, "drives");
+      drive.motion_source = ValueNamed<MotionSource>(rows.Text(), "drives");
       drive.reason = rows.Text();
       const bool follows = map.drives.empty() ? drive.first_pose == 0 && drive.first_node == 0
                                               : drive.first_pose > map.drives.back().first_pose &&

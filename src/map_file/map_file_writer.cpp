@@ -8,6 +8,7 @@
 #include "database.hpp"
 #include "map_rows.hpp"
 #include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/enum_names.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
 
@@ -55,7 +56,7 @@ void WriteOrigin(const MapOrigin& origin, const BuildingMap& result, const Datab
   }
   if (!origin.onto.empty()) run.BindText("onto").BindText(origin.onto).Put();
   if (!origin.identity.empty()) run.BindText("identity").BindText(origin.identity).Put();
-  run.BindText("motion_source").BindText(NameOf(kMotionSources, result.motion_source)).Put();
+  run.BindText("motion_source").BindText(Name(result.motion_source)).Put();
   Statement insert(database, "INSERT INTO options(key, value) VALUES (?,?)");
   for (const auto& [key, value] : ChangedOptions(origin.options)) {
     insert.BindText(key).BindText(value).Put();
@@ -104,7 +105,7 @@ void WriteEdges(const PoseGraph& graph, const Database& database) {
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const Edge& edge = graph.edges()[i];
     insert.Bind(Id(i)).Bind(std::int64_t{edge.from}).Bind(std::int64_t{edge.to});
-    insert.BindText(NameOf(kEdgeKinds, edge.kind));
+    insert.BindText(Name(edge.kind));
     BindPose(edge.T_from_to.mean, insert);
     BindCovariance(edge.T_from_to.covariance, insert);
     BindId(edge.closure, insert);
@@ -174,7 +175,7 @@ void WriteDrives(const std::vector<Drive>& drives, const Database& database) {
     const Drive& drive = drives[i];
     insert.Bind(Id(i)).BindText(drive.log).Bind(Id(drive.first_pose));
     insert.Bind(std::int64_t{drive.first_node}).Bind(drive.stamp_offset_s);
-    insert.BindText(NameOf(kMotionSources, drive.motion_source)).BindText(drive.reason).Put();
+    insert.BindText(Name(drive.motion_source)).BindText(drive.reason).Put();
   }
 }
 

@@ -15,10 +15,6 @@ constexpr std::size_t kPosesPerRow = 1024;
 constexpr std::size_t kPoseBytes = 8 + 4 + 1 + 4 + 24 + 24;
 constexpr std::size_t kCovarianceBytes = 9 * sizeof(double);
 
-/// By enumeration value.
-constexpr std::array<const char*, 3> kEdgeKinds = {"odometry", "floor_change", "closure"};
-constexpr std::array<const char*, 4> kMotionSources = {"auto", "odometry", "scans", "fused"};
-
 struct LogCount {
   const char* key;
   std::uint64_t LogStatistics::*field;

@@ -56,8 +56,10 @@ bool ParseValue(const std::string& text, std::string& value) {
 }
 
 template <typename Enum>
-Choice ChoiceOf(Enum& field, std::vector<std::string> names) {
-  return {std::move(names), [&field] { return static_cast<std::size_t>(field); },
+Choice ChoiceOf(Enum& field) {
+  const auto names = NamesOf(field);
+  return {{names.begin(), names.end()},
+          [&field] { return static_cast<std::size_t>(field); },
           [&field](std::size_t index) { field = static_cast<Enum>(index); }};
 }
 
@@ -122,7 +124,7 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"log.strongest_echo", &o.mapping.log.strongest_echo, 0, 0,
        "of a scanner with several echoes per beam; false: the first"},
 
-      {"motion.source", ChoiceOf(motion.source, {"auto", "odometry", "scans", "fused"}), 0, 0,
+      {"motion.source", ChoiceOf(motion.source), 0, 0,
        "auto: fused where scans come often enough, else odometry"},
       {"motion.odometry.sigma_position_per_sqrt_m", &motion.odometry.sigma_position_per_sqrt_m,
        1e-6, 10, "m of position error after one metre of travel"},
@@ -138,10 +140,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"motion.odometry.sigma_position_per_step", &motion.odometry.sigma_position_per_step, 1e-6, 1,
        "m of position error of every step with motion"},
 
-      {"floors.source",
-       ChoiceOf(o.mapping.floors.source,
-                {"auto", "labels", "pressure", "acceleration", "lidar", "none"}),
-       0, 0, "what tells floors apart; auto: the best that the log holds"},
+      {"floors.source", ChoiceOf(o.mapping.floors.source), 0, 0,
+       "what tells floors apart; auto: the best that the log holds"},
       {"floors.file", &o.mapping.floors.file, 0, 0,
        "lines `t,label`, stand for the log's FLOOR lines (--floors)"},
       {"floors.storeys.min_gap", &o.mapping.floors.storeys.min_gap, 0.5, 100,

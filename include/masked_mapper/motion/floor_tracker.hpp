@@ -26,6 +26,9 @@ enum class FloorSource {
   kLidar,         ///< the scans: elevators only, and never which floor
   kNone,          ///< one floor
 };
+constexpr std::array<const char*, 6> NamesOf(FloorSource /*any*/) {
+  return {"auto", "labels", "pressure", "acceleration", "lidar", "none"};
+}
 
 struct FloorOptions {
   FloorSource source = FloorSource::kAuto;

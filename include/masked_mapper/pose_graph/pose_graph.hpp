@@ -3,6 +3,7 @@
 // are immutable; the optimised pose of a node is the one thing that moves.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ struct Node {
 };
 
 enum class EdgeKind { kOdometry, kFloorChange, kClosure };
+constexpr std::array<const char*, 3> NamesOf(EdgeKind /*any*/) {
+  return {"odometry", "floor_change", "closure"};
+}
 
 struct Edge {
   NodeId from = 0;

@@ -2,6 +2,8 @@
 // Which sensors tell how the robot moved.
 #pragma once
 
+#include <array>
+
 namespace masked_mapper {
 
 enum class MotionSource {
@@ -10,5 +12,8 @@ enum class MotionSource {
   kScans,     ///< scans alone: wheels are not looked at
   kFused,     ///< wheels guess, scans correct
 };
+constexpr std::array<const char*, 4> NamesOf(MotionSource /*any*/) {
+  return {"auto", "odometry", "scans", "fused"};
+}
 
 }  // namespace masked_mapper
