@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // masked_mapper evaluate OUT [--relations FILE] [--truth FILE] [--checked OUT...] [--json]
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,6 +17,7 @@
 #include "masked_mapper/evaluation/result_folder.hpp"
 #include "masked_mapper/evaluation/trajectory_error.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -203,13 +202,7 @@ void PrintJson(const Evaluation& evaluation) {
   std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
 
-std::string Fixed(double value, int decimals) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
-std::string Percent(double share) { return Fixed(100.0 * share, 2) + " %"; }
+std::string Percent(double share) { return FixedText(100.0 * share, 2) + " %"; }
 
 void Line(const std::string& name, const std::string& value) {
   const std::size_t width = 22;
@@ -218,15 +211,15 @@ void Line(const std::string& name, const std::string& value) {
 }
 
 std::string SpreadText(const ErrorStatistics& statistics, int decimals, const std::string& unit) {
-  return Fixed(statistics.mean, decimals) + " +- " + Fixed(statistics.std, decimals) + " " + unit +
-         " (median " + Fixed(statistics.median, decimals) + ", largest " +
-         Fixed(statistics.max, decimals) + ")";
+  return FixedText(statistics.mean, decimals) + " +- " + FixedText(statistics.std, decimals) + " " +
+         unit + " (median " + FixedText(statistics.median, decimals) + ", largest " +
+         FixedText(statistics.max, decimals) + ")";
 }
 
 std::string PositionText(const ErrorStatistics& statistics) {
-  return "mean " + Fixed(statistics.mean, 3) + " m, median " + Fixed(statistics.median, 3) +
-         " m, 99 % below " + Fixed(statistics.p99, 3) + " m, largest " + Fixed(statistics.max, 3) +
-         " m";
+  return "mean " + FixedText(statistics.mean, 3) + " m, median " + FixedText(statistics.median, 3) +
+         " m, 99 % below " + FixedText(statistics.p99, 3) + " m, largest " +
+         FixedText(statistics.max, 3) + " m";
 }
 
 void PrintTrajectory(const TrajectoryError& error) {
@@ -235,14 +228,14 @@ void PrintTrajectory(const TrajectoryError& error) {
   Line("aligned", PositionText(error.aligned.position_m));
   Line("heading, aligned", SpreadText(error.aligned.heading_deg, 3, "deg"));
   Line("elevation", SpreadText(error.elevation_m, 3, "m"));
-  const std::string stretch = "over " + Fixed(error.relative_over_m, 0) + " m of the way";
+  const std::string stretch = "over " + FixedText(error.relative_over_m, 0) + " m of the way";
   if (error.relative_translation_m.count > 0) {
     Line(stretch, SpreadText(error.relative_translation_m, 3, "m"));
     Line("", SpreadText(error.relative_rotation_deg, 3, "deg"));
   }
   for (const FloorError& floor : error.floors) {
-    Line("floor " + floor.label, "mean " + Fixed(floor.as_it_stands.position_m.mean, 3) +
-                                     " m, aligned " + Fixed(floor.aligned.position_m.mean, 3) +
+    Line("floor " + floor.label, "mean " + FixedText(floor.as_it_stands.position_m.mean, 3) +
+                                     " m, aligned " + FixedText(floor.aligned.position_m.mean, 3) +
                                      " m (" + std::to_string(floor.aligned.position_m.count) +
                                      " scans)");
   }
@@ -258,9 +251,10 @@ void PrintClosures(const ClosureError& closures) {
                        " pairs of nodes that see the same place");
   }
   for (const FalseClosure& closure : closures.false_closures) {
-    Line("false", "stamps " + Fixed(closure.stamp_a, 6) + " and " + Fixed(closure.stamp_b, 6) +
-                      ": off by " + Fixed(closure.translation_m, 2) + " m, " +
-                      Fixed(closure.rotation_deg, 1) + " deg");
+    Line("false", "stamps " + FixedText(closure.stamp_a, 6) + " and " +
+                      FixedText(closure.stamp_b, 6) + ": off by " +
+                      FixedText(closure.translation_m, 2) + " m, " +
+                      FixedText(closure.rotation_deg, 1) + " deg");
   }
 }
 
@@ -282,9 +276,9 @@ void PrintText(const Evaluation& evaluation) {
   }
   if (evaluation.path_length) {
     std::cout << "path length: " << evaluation.path_length->error_m.count << " pairs of stamps\n";
-    Line("error", "mean " + Fixed(evaluation.path_length->error_m.mean, 3) + " m");
-    Line("missing closures", Fixed(evaluation.path_length->missing_m, 3) + " m too long");
-    Line("false closures", Fixed(evaluation.path_length->false_m, 3) + " m too short");
+    Line("error", "mean " + FixedText(evaluation.path_length->error_m.mean, 3) + " m");
+    Line("missing closures", FixedText(evaluation.path_length->missing_m, 3) + " m too long");
+    Line("false closures", FixedText(evaluation.path_length->false_m, 3) + " m too short");
   }
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // masked_mapper info LOG|OUT|MAP [--json]
-#include <array>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 #include "map_info.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/log_summary.hpp"
+#include "masked_mapper/text/number_text.hpp"
 #include "option_flags.hpp"
 #include "saved_map_path.hpp"
 
@@ -26,12 +25,6 @@ struct InfoArguments {
   bool json = false;
   bool quiet = false;
 };
-
-std::string Fixed(double value, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
 
 /// "361 (1988 scans)", several with the most frequent first come in order of beams.
 std::string BeamsText(const LogSummary& summary) {
@@ -65,8 +58,8 @@ std::vector<std::string> Warnings(const LogSummary& summary) {
   }
   constexpr double kGap = 2.0;  // s without a scan: the robot may be anywhere
   if (summary.largest_gap_s > kGap) {
-    warnings.push_back("no scan for " + Fixed(summary.largest_gap_s, 1) + " s after stamp " +
-                       Fixed(summary.largest_gap_stamp, 3));
+    warnings.push_back("no scan for " + FixedText(summary.largest_gap_s, 1) + " s after stamp " +
+                       FixedText(summary.largest_gap_stamp, 3));
   }
   return warnings;
 }
@@ -77,13 +70,13 @@ void PrintText(const std::string& log, const LogSummary& summary) {
     std::cout << "  " << name << std::string(14 - name.size(), ' ') << value << "\n";
   };
   const auto readings = [&](const std::string& name, std::uint64_t count, double rate) {
-    if (count > 0) line(name, std::to_string(count) + " at " + Fixed(rate, 1) + " Hz");
+    if (count > 0) line(name, std::to_string(count) + " at " + FixedText(rate, 1) + " Hz");
   };
   std::cout << log << "\n";
-  line("duration", Fixed(summary.duration_s, 1) + " s");
+  line("duration", FixedText(summary.duration_s, 1) + " s");
   if (summary.has_odometry) {
-    line("path", Fixed(summary.path_length_m, 1) + " m, turned by " +
-                     Fixed(RadToDeg(summary.turned_rad), 0) + " deg in all, by odometry");
+    line("path", FixedText(summary.path_length_m, 1) + " m, turned by " +
+                     FixedText(RadToDeg(summary.turned_rad), 0) + " deg in all, by odometry");
   }
   readings("scans", statistics.scans, summary.scan_rate_hz);
   readings("odometry", statistics.odometry, summary.odometry_rate_hz);
@@ -91,16 +84,17 @@ void PrintText(const std::string& log, const LogSummary& summary) {
   readings("acceleration", statistics.acceleration, summary.acceleration_rate_hz);
   if (statistics.floor_labels > 0) line("floor labels", std::to_string(statistics.floor_labels));
   line("beams", BeamsText(summary));
-  line("field of view", Fixed(RadToDeg(summary.field_of_view_rad), 1) + " deg");
-  line("laser", "at x " + Fixed(summary.T_robot_laser.x, 3) + " m, y " +
-                    Fixed(summary.T_robot_laser.y, 3) + " m, " +
-                    Fixed(RadToDeg(summary.T_robot_laser.theta), 1) + " deg on the robot");
+  line("field of view", FixedText(RadToDeg(summary.field_of_view_rad), 1) + " deg");
+  line("laser", "at x " + FixedText(summary.T_robot_laser.x, 3) + " m, y " +
+                    FixedText(summary.T_robot_laser.y, 3) + " m, " +
+                    FixedText(RadToDeg(summary.T_robot_laser.theta), 1) + " deg on the robot");
   const auto& quantiles = summary.range_quantiles_m;
-  line("ranges", "5 % below " + Fixed(quantiles[0], 2) + " m, half below " +
-                     Fixed(quantiles[2], 2) + " m, 95 % below " + Fixed(quantiles[4], 2) + " m");
-  line("no return", Fixed(100.0 * summary.share_no_return, 1) + " % of beams (beyond " +
-                        Fixed(summary.max_range_m, 2) + " m), " +
-                        Fixed(100.0 * summary.share_invalid, 1) + " % invalid");
+  line("ranges", "5 % below " + FixedText(quantiles[0], 2) + " m, half below " +
+                     FixedText(quantiles[2], 2) + " m, 95 % below " + FixedText(quantiles[4], 2) +
+                     " m");
+  line("no return", FixedText(100.0 * summary.share_no_return, 1) + " % of beams (beyond " +
+                        FixedText(summary.max_range_m, 2) + " m), " +
+                        FixedText(100.0 * summary.share_invalid, 1) + " % invalid");
   for (const auto& [name, count] : statistics.other_messages) {
     line("not read", std::to_string(count) + " " + name);
   }
@@ -113,7 +107,7 @@ void PrintJson(const std::string& log, const LogSummary& summary) {
   for (const auto& [count, scans] : summary.scans_of_beams) beams[std::to_string(count)] = scans;
   Json quantiles = Json::object();
   for (std::size_t i = 0; i < LogSummary::kQuantiles.size(); ++i) {
-    quantiles[Fixed(LogSummary::kQuantiles[i], 2)] = summary.range_quantiles_m[i];
+    quantiles[FixedText(LogSummary::kQuantiles[i], 2)] = summary.range_quantiles_m[i];
   }
   const Json json = {{"log", log},
                      {"duration_s", summary.duration_s},

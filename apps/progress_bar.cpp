@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "interrupt.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -16,12 +17,6 @@ constexpr double kRedrawSeconds = 0.1;  // of the bar
 constexpr double kLineSeconds = 2.0;    // between plain lines, at the least
 constexpr double kLineFraction = 0.1;   // and the same in progress
 constexpr int kBarWidth = 24;
-
-std::string Fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
 
 /// "7 s", "2 min 05 s", "3 h 12 min".
 std::string Duration(double seconds) {
@@ -52,7 +47,7 @@ double ProgressBar::SecondsSince(Clock::time_point start) const {
 
 std::string ProgressBar::Rate(double seconds) const {
   if (scans_ == 0) return "";
-  return Fixed(static_cast<double>(scans_) / std::max(seconds, 1e-3), 0) + " scans/s";
+  return FixedText(static_cast<double>(scans_) / std::max(seconds, 1e-3), 0) + " scans/s";
 }
 
 void ProgressBar::PrintLine(const std::string& line) {
@@ -75,7 +70,7 @@ void ProgressBar::Finish() {
   if (stage_.empty()) return;
   const double seconds = SecondsSince(stage_start_);
   PrintLine(stage_ + ": " + (scans_ == 0 ? "" : std::to_string(scans_) + " scans, ") +
-            Fixed(seconds, 1) + " s" + (scans_ == 0 ? "" : ", " + Rate(seconds)));
+            FixedText(seconds, 1) + " s" + (scans_ == 0 ? "" : ", " + Rate(seconds)));
   stage_.clear();
 }
 
@@ -95,7 +90,7 @@ void ProgressBar::Progress(double fraction, std::uint64_t scans) {
 }
 
 void ProgressBar::DrawBar(double seconds) {
-  const std::string percent = Fixed(100.0 * fraction_, 0) + " %";
+  const std::string percent = FixedText(100.0 * fraction_, 0) + " %";
   const std::string left =
       fraction_ > 0.0 ? Duration(seconds / fraction_ * (1.0 - fraction_)) + " left" : "";
   if (!is_terminal_) {

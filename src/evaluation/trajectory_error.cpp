@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "masked_mapper/geometry/rigid_alignment.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -31,7 +33,12 @@ AbsoluteError ErrorOf(const Paired& paired, const Pose2& T_truth_map) {
 }
 
 AbsoluteError AlignedErrorOf(const Paired& paired) {
-  return ErrorOf(paired, AlignRigidly(paired.T_truth_robot, paired.T_map_robot));
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> places;
+  for (std::size_t i = 0; i < paired.T_truth_robot.size(); ++i) {
+    places.emplace_back(paired.T_truth_robot[i].Translation(), paired.T_map_robot[i].Translation());
+  }
+  const Pose2 T_truth_map = AlignRigidly(places);
+  return ErrorOf(paired, T_truth_map);
 }
 
 // Each stretch begins at a paired scan and ends at the first one that is so far along the true way.
@@ -59,29 +66,6 @@ void CompareStretches(const Paired& paired, TrajectoryError& error) {
 }
 
 }  // namespace
-
-Pose2 AlignRigidly(const std::vector<Pose2>& T_truth_robot, const std::vector<Pose2>& T_map_robot) {
-  if (T_truth_robot.empty()) return {};
-  Eigen::Vector2d truth_centre = Eigen::Vector2d::Zero();
-  Eigen::Vector2d map_centre = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < T_truth_robot.size(); ++i) {
-    truth_centre += T_truth_robot[i].Translation();
-    map_centre += T_map_robot[i].Translation();
-  }
-  truth_centre /= static_cast<double>(T_truth_robot.size());
-  map_centre /= static_cast<double>(T_truth_robot.size());
-  double along = 0.0;
-  double across = 0.0;
-  for (std::size_t i = 0; i < T_truth_robot.size(); ++i) {
-    const Eigen::Vector2d truth = T_truth_robot[i].Translation() - truth_centre;
-    const Eigen::Vector2d map = T_map_robot[i].Translation() - map_centre;
-    along += map.dot(truth);
-    across += map.x() * truth.y() - map.y() * truth.x();
-  }
-  const Pose2 rotation{0.0, 0.0, std::atan2(across, along)};
-  const Eigen::Vector2d shift = truth_centre - rotation * map_centre;
-  return {shift.x(), shift.y(), rotation.theta};
-}
 
 std::optional<TrajectoryError> CompareWithTruth(const std::vector<StampedPose>& trajectory,
                                                 const Truth& truth,

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "masked_mapper/log/floor_file.hpp"
+#include "masked_mapper/text/ends_with.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -16,11 +17,6 @@ constexpr double kLongestGap = 1.0;          // s between exact poses
 constexpr double kFarthestCarriedKey = 5.0;  // s
 
 const std::string kExactEnding = ".truth.tum";
-
-bool EndsWith(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
 
 std::string FloorsPath(const std::string& path) {
   const std::string stem = EndsWith(path, kExactEnding)

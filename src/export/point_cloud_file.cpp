@@ -40,12 +40,19 @@ void Append(const T& value, std::string* bytes) {
   bytes->append(raw, sizeof(T));
 }
 
-template <typename AppendPoint>
-void WriteCloud(const std::string& header, const ColouredCloud& cloud, const AppendPoint& append,
-                const std::filesystem::path& path) {
+// Of a point first its place, then what the format has for a colour, then its label.
+template <typename AppendColour>
+void WriteCloud(const std::string& header, const ColouredCloud& cloud,
+                const AppendColour& append_colour, const std::filesystem::path& path) {
   std::string bytes = header;
   bytes.reserve(header.size() + cloud.size() * 20);
-  for (const pcl::PointXYZRGBL& point : cloud) append(point, &bytes);
+  for (const pcl::PointXYZRGBL& point : cloud) {
+    Append(point.x, &bytes);
+    Append(point.y, &bytes);
+    Append(point.z, &bytes);
+    append_colour(point, &bytes);
+    Append(point.label, &bytes);
+  }
   WriteFile(path, bytes);
 }
 
@@ -98,14 +105,7 @@ void WritePcd(const ColouredCloud& cloud, const std::filesystem::path& path) {
       "DATA binary\n";
   WriteCloud(
       header, cloud,
-      [](const pcl::PointXYZRGBL& point, std::string* bytes) {
-        Append(point.x, bytes);
-        Append(point.y, bytes);
-        Append(point.z, bytes);
-        Append(point.rgba, bytes);
-        Append(point.label, bytes);
-      },
-      path);
+      [](const pcl::PointXYZRGBL& point, std::string* bytes) { Append(point.rgba, bytes); }, path);
 }
 
 void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
@@ -126,13 +126,9 @@ void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
   WriteCloud(
       header, cloud,
       [](const pcl::PointXYZRGBL& point, std::string* bytes) {
-        Append(point.x, bytes);
-        Append(point.y, bytes);
-        Append(point.z, bytes);
         Append(point.r, bytes);
         Append(point.g, bytes);
         Append(point.b, bytes);
-        Append(point.label, bytes);
       },
       path);
 }

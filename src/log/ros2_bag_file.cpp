@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "sqlite_messages.hpp"
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/median.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -22,12 +23,6 @@ constexpr double kLimitContradicted = 0.01;  // share of ranges beyond the state
 constexpr double kBeyondFarthest = 1.001;
 constexpr double kLeastLimit = 1.0;  // m; a stated limit below is no limit
 constexpr double kFullTurn = 2.0 * kPi;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double Motion(const Pose2& T_w_a, const Pose2& T_w_b) {
   return std::max(Distance(T_w_a, T_w_b), std::abs(WrapAngle(T_w_a.theta - T_w_b.theta)));

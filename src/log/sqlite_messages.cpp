@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
+#include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -16,25 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 constexpr int kGreatestValue = 64 << 20;  // bytes
 constexpr int kOperationsPerLook = 100000;
 constexpr int kMostLooks = 100;  // of one step; an honest one takes fewer than one
-
-/// A path as a URI, in which a few characters mean something else.
-std::string UriOf(const fs::path& path) {
-  constexpr const char* kDigits = "0123456789ABCDEF";
-  std::string uri = "file:";
-  for (const char character : fs::absolute(path).string()) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (std::isalnum(byte) != 0 || std::string_view("/.-_").find(character) != std::string::npos) {
-      uri += character;
-    } else {
-      uri += {'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
-    }
-  }
-  return uri;
-}
 
 /// Whether a recording that was not closed has left messages beside the file.
 bool HasCompanion(const fs::path& path) {
@@ -54,15 +38,6 @@ std::string Text(sqlite3_stmt* statement, int column) {
 
 }  // namespace
 
-bool BeginsAsSqlite(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return false;
-  char beginning[kSqliteMagic.size()];
-  std::ifstream file(path, std::ios::binary);
-  file.read(beginning, sizeof(beginning));
-  return std::string_view(beginning, static_cast<std::size_t>(file.gcount())) == kSqliteMagic;
-}
-
 void SqliteMessages::CloseDatabase::operator()(sqlite3* database) const { sqlite3_close(database); }
 void SqliteMessages::CloseStatement::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
@@ -72,7 +47,7 @@ SqliteMessages::SqliteMessages(const fs::path& path) : path_(path.string()) {
   if (!BeginsAsSqlite(path)) throw InputError(path_ + ": no ROS 2 bag (not an SQLite file)");
   sqlite3* opened = nullptr;
   // Immutable: nothing is written beside a file that may stand on a read-only medium.
-  const std::string uri = UriOf(path) + (HasCompanion(path) ? "" : "?immutable=1");
+  const std::string uri = SqliteUri(path) + (HasCompanion(path) ? "" : "?immutable=1");
   const int code =
       sqlite3_open_v2(uri.c_str(), &opened, SQLITE_OPEN_URI | SQLITE_OPEN_READONLY, nullptr);
   database_.reset(opened);

@@ -19,8 +19,6 @@ namespace masked_mapper {
 
 constexpr std::size_t kMostBagTopics = 10000;
 
-bool BeginsAsSqlite(const std::filesystem::path& path);
-
 class SqliteMessages {
  public:
   /// Throws InputError: no SQLite file, not the tables of a bag, cannot be opened.

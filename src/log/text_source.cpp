@@ -10,17 +10,13 @@
 #include <cstring>
 #include <vector>
 
+#include "masked_mapper/text/ends_with.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
 
 constexpr std::size_t kFileBlock = 128 * 1024;
-
-bool EndsWith(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
 
 /// Size of a regular file; throws InputError for anything else.
 std::uint64_t RegularFileSize(const std::string& path) {

@@ -5,30 +5,14 @@
 
 #include <new>
 
+#include "masked_mapper/log/sqlite_file.hpp"
+
 namespace masked_mapper {
 namespace {
 
 [[noreturn]] void ThrowCode(int code, const std::string& message) {
   if ((code & 0xff) == SQLITE_NOMEM) throw std::bad_alloc();
   throw DatabaseError(message, (code & 0xff) == SQLITE_BUSY);
-}
-
-// A path as a URI, in which a few characters mean something else.
-std::string UriOf(const std::filesystem::path& path, const std::string& parameters) {
-  constexpr const char* kDigits = "0123456789ABCDEF";
-  std::string uri = "file:";
-  for (const char character : std::filesystem::absolute(path).string()) {
-    const auto byte = static_cast<unsigned char>(character);
-    const bool is_plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
-                          (byte >= '0' && byte <= '9') || byte == '/' || byte == '.' ||
-                          byte == '-' || byte == '_';
-    if (is_plain) {
-      uri += character;
-    } else {
-      uri += {'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
-    }
-  }
-  return uri + parameters;
 }
 
 ValueType TypeOf(int type) {
@@ -54,7 +38,7 @@ Database::Database(const std::filesystem::path& path, OpenMode mode) {
   const bool reads = mode == OpenMode::kRead;
   sqlite3* opened = nullptr;
   const int code = sqlite3_open_v2(
-      UriOf(path, reads ? "?immutable=1" : "").c_str(), &opened,
+      (SqliteUri(path) + (reads ? "?immutable=1" : "")).c_str(), &opened,
       SQLITE_OPEN_URI | (reads ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE),
       nullptr);
   database_.reset(opened);

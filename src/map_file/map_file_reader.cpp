@@ -10,14 +10,16 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
-
 #include "database.hpp"
 #include "map_rows.hpp"
+#include "map_tables.hpp"
 #include "masked_mapper/geometry/covariance.hpp"
+#include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/enum_names.hpp"
+#include <system_error>
+#include <utility>
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
@@ -461,12 +463,8 @@ std::uint64_t CheckIsDatabase(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(status)) {
     throw InputError(path.string() + ": not a file");
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path.string() + ": cannot be read");
-  constexpr std::string_view kMagic("SQLite format 3\0", 16);
-  std::string magic(kMagic.size(), '\0');
-  in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (!in || magic != kMagic) throw InputError(path.string() + ": not a saved map");
+  if (!std::ifstream(path, std::ios::binary)) throw InputError(path.string() + ": cannot be read");
+  if (!BeginsAsSqlite(path)) throw InputError(path.string() + ": not a saved map");
   return std::filesystem::file_size(path, error);
 }
 

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
@@ -16,13 +17,6 @@
 
 namespace masked_mapper {
 namespace {
-
-double Median(std::vector<float> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// One label may stand for the whole log; of several, none in the log's time means another clock.
 void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,

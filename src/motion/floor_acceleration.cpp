@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "masked_mapper/geometry/median.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -15,12 +17,6 @@ struct Vertical {
   double stamp = 0.0;  ///< s
   double value = 0.0;  ///< m/s^2 up
 };
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// One push of the cab: samples [first, end).
 struct Pulse {

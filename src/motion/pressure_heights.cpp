@@ -6,15 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "masked_mapper/geometry/median.hpp"
+
 namespace masked_mapper {
 namespace {
-
-/// `values` must not be empty.
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Pascal per unit of readings around `median`, 0 when no unit makes air pressure of them. Ours.
 double PascalPerUnit(double median) {

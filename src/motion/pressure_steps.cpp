@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "masked_mapper/geometry/median.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -47,9 +49,7 @@ std::vector<Difference> Differences(const std::vector<HeightSample>& samples, do
 double MedianHeight(const std::vector<HeightSample>& samples, std::size_t first, std::size_t end) {
   std::vector<double> heights;
   for (std::size_t i = first; i < end; ++i) heights.push_back(samples[i].height);
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return Median(std::move(heights));
 }
 
 /// Narrows [first, last], known to hold a step, to the samples between which the heights move.

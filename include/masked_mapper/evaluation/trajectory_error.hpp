@@ -37,10 +37,6 @@ struct TrajectoryError {
   std::vector<FloorError> floors;  ///< the map's floors that have paired scans
 };
 
-/// T_truth_map of least squared distances between the paired positions; the identity for none, and
-/// a shift alone where they do not spread.
-Pose2 AlignRigidly(const std::vector<Pose2>& T_truth_robot, const std::vector<Pose2>& T_map_robot);
-
 /// Nothing when no scan is paired. `floors` may be empty.
 std::optional<TrajectoryError> CompareWithTruth(const std::vector<StampedPose>& trajectory,
                                                 const Truth& truth,
