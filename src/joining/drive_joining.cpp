@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -23,6 +22,7 @@
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -112,10 +112,8 @@ class DriveJoiner {
     map_.seconds += more.seconds;
     map_.warnings.insert(map_.warnings.end(), more.warnings.begin(), more.warnings.end());
     if (offset != 0.0) {
-      char text[200];
-      std::snprintf(text, sizeof text, ": its stamps are shifted by %.0f s, to follow the others",
-                    offset);
-      said_.push_back(map_.drives.back().log + text);
+      said_.push_back(map_.drives.back().log + ": its stamps are shifted by " +
+                      FixedText(offset, 0) + " s, to follow the others");
     }
   }
 

@@ -2,9 +2,7 @@
 #include "masked_mapper/mapping/log_survey.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -25,11 +24,8 @@ void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
     return label.stamp >= log.first_stamp && label.stamp <= log.last_stamp;
   });
   if (is_in_time || labels.size() <= 1) return;
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                ": no label falls into the time of the log, which is %.3f to %.3f s",
-                log.first_stamp, log.last_stamp);
-  throw InputError(path + text.data());
+  throw InputError(path + ": no label falls into the time of the log, which is " +
+                   FixedText(log.first_stamp, 3) + " to " + FixedText(log.last_stamp, 3) + " s");
 }
 
 /// Looks at the first turns of the drive once more, with beams.

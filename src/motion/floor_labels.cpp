@@ -12,6 +12,7 @@
 #include "assumed_heights.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -227,11 +228,7 @@ std::vector<FloorInterval> IntervalsOf(const std::vector<Stay>& stays,
   return intervals;
 }
 
-std::string At(double stamp) {
-  char text[48];
-  std::snprintf(text, sizeof(text), "%.3f s", stamp);
-  return text;
-}
+std::string At(double stamp) { return FixedText(stamp, 3) + " s"; }
 
 }  // namespace
 

@@ -3,9 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -127,15 +127,13 @@ std::string MountCheck::Warning() const {
     return "scans turn the other way than the wheels: the scanner seems to be mounted upside down "
            "(--set log.upside_down=true, or false if it is set)";
   }
-  std::array<char, 300> text{};
   const double yaw_deg = RadToDeg(WrapAngle(T_robot_laser_.theta + fault.yaw));
   const Eigen::Vector2d place = T_robot_laser_.Translation() + fault.offset;
-  std::snprintf(text.data(), text.size(),
-                "wheels and scans agree best with the scanner %s than the log says "
-                "(--set log.laser_x=%.2f --set log.laser_y=%.2f --set log.laser_theta_deg=%.1f)",
-                fault.yaw != 0.0 ? "looking elsewhere" : "sitting elsewhere", place.x(), place.y(),
-                yaw_deg);
-  return text.data();
+  return std::string("wheels and scans agree best with the scanner ") +
+         (fault.yaw != 0.0 ? "looking elsewhere" : "sitting elsewhere") +
+         " than the log says (--set log.laser_x=" + FixedText(place.x(), 2) +
+         " --set log.laser_y=" + FixedText(place.y(), 2) +
+         " --set log.laser_theta_deg=" + FixedText(yaw_deg, 1) + ")";
 }
 
 }  // namespace masked_mapper

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "masked_mapper/text/number_text.hpp"
 
 #include "masked_mapper/geometry/median.hpp"
 
@@ -86,12 +87,6 @@ std::vector<HeightSample> WithoutSpikes(const std::vector<HeightSample>& samples
   return kept;
 }
 
-std::string Line(const char* format, double a, double b = 0.0) {
-  char line[160];
-  std::snprintf(line, sizeof(line), format, a, b);
-  return line;
-}
-
 }  // namespace
 
 PressureHeights HeightsOfPressure(const std::vector<PressureReading>& readings,
@@ -110,20 +105,18 @@ PressureHeights HeightsOfPressure(const std::vector<PressureReading>& readings,
   }
   const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
   if (*lowest == *highest) {
-    result.warnings.push_back(Line("pressure is constantly %g: left out", *lowest));
+    result.warnings.push_back("pressure is constantly " + ShortText(*lowest) + ": left out");
     return result;
   }
   const double median = Median(values);
   const double pa_per_unit = PascalPerUnit(median);
   if (pa_per_unit == 0.0) {
-    result.warnings.push_back(Line("pressure around %g is none of air: left out", median));
+    result.warnings.push_back("pressure around " + ShortText(median) + " is none of air: left out");
     return result;
   }
   if (pa_per_unit != 1.0) {
-    result.warnings.push_back(Line(pa_per_unit == 100.0
-                                       ? "pressure around %g is taken as hectopascals"
-                                       : "pressure around %g is taken as kilopascals",
-                                   median));
+    result.warnings.push_back("pressure around " + ShortText(median) + " is taken as " +
+                              (pa_per_unit == 100.0 ? "hectopascals" : "kilopascals"));
   }
   const double units_per_m =
       PascalPerMetre(median * pa_per_unit, options.pressure_pa_per_m) / pa_per_unit;
@@ -137,9 +130,9 @@ PressureHeights HeightsOfPressure(const std::vector<PressureReading>& readings,
     }
   }
   if (samples.size() < readings.size()) {
-    result.warnings.push_back(Line("%.0f of %.0f pressure readings are none of air: left out",
-                                   static_cast<double>(readings.size() - samples.size()),
-                                   static_cast<double>(readings.size())));
+    result.warnings.push_back(std::to_string(readings.size() - samples.size()) + " of " +
+                              std::to_string(readings.size()) +
+                              " pressure readings are none of air: left out");
   }
   if (samples.size() < 2) return result;
   result.samples = MediansOfSpells(samples);

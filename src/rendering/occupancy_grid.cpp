@@ -5,13 +5,13 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <limits>
 #include <optional>
 #include <string>
 
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -57,12 +57,9 @@ int CellOf(Fixed coordinate) { return static_cast<int>(coordinate >> kFractionBi
 Fixed EdgeOf(Fixed coordinate) { return coordinate - (coordinate & (2 * kHalfCell - 1)); }
 
 std::string TooLarge(double width_m, double height_m, double resolution_m) {
-  char text[160];
-  std::snprintf(text, sizeof(text),
-                "a floor of %.0f x %.0f m is too large for a grid of %g m cells: use a coarser "
-                "resolution, or look for a jump in the odometry",
-                width_m, height_m, resolution_m);
-  return text;
+  return "a floor of " + FixedText(width_m, 0) + " x " + FixedText(height_m, 0) +
+         " m is too large for a grid of " + ShortText(resolution_m) +
+         " m cells: use a coarser resolution, or look for a jump in the odometry";
 }
 
 // What a beam does to the grid: clears up to `range` and, if `hit`, ends in a wall there.

@@ -12,10 +12,10 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -42,12 +42,9 @@ struct Block {
 };
 
 std::string OutOfReach(double reach_m, double resolution_m) {
-  char text[200];
-  std::snprintf(text, sizeof(text),
-                "the map reaches %.0f m from its origin, but an octree of %g m voxels ends at %.0f "
-                "m: use a coarser resolution",
-                reach_m, resolution_m, kKeyOfOrigin * resolution_m);
-  return text;
+  return "the map reaches " + FixedText(reach_m, 0) + " m from its origin, but an octree of " +
+         ShortText(resolution_m) + " m voxels ends at " +
+         FixedText(kKeyOfOrigin * resolution_m, 0) + " m: use a coarser resolution";
 }
 
 KeyRange CheckedKeys(double first_cell, double count, double resolution_m) {

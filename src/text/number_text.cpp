@@ -28,6 +28,15 @@ std::string FixedText(double value, int decimals) {
   return WithoutSignOfZero(digits.data(), end.ptr);
 }
 
+std::string ShortText(double value, int digits) {
+  assert(digits > 0 && digits < 50);
+  Digits text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::general, digits);
+  assert(end.ec == std::errc());
+  return {text.data(), end.ptr};
+}
+
 std::string ExactText(double value) {
   Digits digits;
   const auto end =

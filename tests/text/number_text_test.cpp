@@ -40,5 +40,13 @@ TEST(NumberText, ExtremesFit) {
   EXPECT_FALSE(ExactText(std::numeric_limits<double>::denorm_min()).empty());
 }
 
+TEST(NumberText, ShortAsPeopleWriteIt) {
+  EXPECT_EQ(ShortText(0.05), "0.05");
+  EXPECT_EQ(ShortText(1013.25), "1013.25");
+  EXPECT_EQ(ShortText(101325.125), "101325");
+  EXPECT_EQ(ShortText(1e-7), "1e-07");
+  EXPECT_EQ(ShortText(1357924680.25, 10), "1357924680");
+}
+
 }  // namespace
 }  // namespace masked_mapper
