@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/evaluation/shortest_path.hpp"
+#include "shortest_path.hpp"
 
 namespace masked_mapper {
 namespace {

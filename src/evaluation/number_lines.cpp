@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/number_lines.hpp"
+#include "number_lines.hpp"
 
 #include <algorithm>
 #include <charconv>

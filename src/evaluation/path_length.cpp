@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "masked_mapper/evaluation/shortest_path.hpp"
+#include "shortest_path.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string_view>
 
-#include "masked_mapper/evaluation/number_lines.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "number_lines.hpp"
 
 namespace masked_mapper {
 

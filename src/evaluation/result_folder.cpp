@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "masked_mapper/evaluation/number_lines.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "number_lines.hpp"
 
 namespace masked_mapper {
 namespace {

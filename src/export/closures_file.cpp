@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/export/closures_file.hpp"
 
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

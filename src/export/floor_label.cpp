@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/floor_label.hpp"
+#include "floor_label.hpp"
 
 #include <set>
 

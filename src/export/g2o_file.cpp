@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/g2o_file.hpp"
+#include "g2o_file.hpp"
 
 #include <Eigen/Dense>
 #include <array>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,16 +12,16 @@
 #include <system_error>
 #include <utility>
 
+#include "floor_label.hpp"
+#include "g2o_file.hpp"
 #include "masked_mapper/export/closures_file.hpp"
-#include "masked_mapper/export/floor_label.hpp"
-#include "masked_mapper/export/g2o_file.hpp"
-#include "masked_mapper/export/occupancy_grid_file.hpp"
-#include "masked_mapper/export/octomap_file.hpp"
-#include "masked_mapper/export/point_cloud_file.hpp"
-#include "masked_mapper/export/report.hpp"
-#include "masked_mapper/export/trajectory_file.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "occupancy_grid_file.hpp"
+#include "octomap_file.hpp"
+#include "point_cloud_file.hpp"
+#include "report.hpp"
+#include "trajectory_file.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/occupancy_grid_file.hpp"
+#include "occupancy_grid_file.hpp"
 
 #include <string>
 
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

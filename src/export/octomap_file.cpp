@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/octomap_file.hpp"
+#include "octomap_file.hpp"
 
 // OctoMap prints from its headers in debug builds unless told not to.
 #ifndef OCTOMAP_NODEBUGOUT
@@ -10,8 +10,8 @@
 #include <ostream>
 #include <streambuf>
 
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/output_file.hpp"
+#include "output_file.hpp"
 
 #include <cerrno>
 #include <stdexcept>

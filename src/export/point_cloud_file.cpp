@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/point_cloud_file.hpp"
+#include "point_cloud_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-#include "masked_mapper/export/output_file.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

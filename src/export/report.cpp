@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/report.hpp"
+#include "report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "export/viewer_page.hpp"
-#include "masked_mapper/export/output_file.hpp"
-#include "masked_mapper/export/point_cloud_file.hpp"
 #include "masked_mapper/geometry/angle.hpp"
+#include "output_file.hpp"
+#include "point_cloud_file.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/trajectory_file.hpp"
+#include "trajectory_file.hpp"
 
 #include <cmath>
 #include <string>
 
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "output_file.hpp"
 
 namespace masked_mapper {
 namespace {

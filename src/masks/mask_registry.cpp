@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "masked_mapper/masks/combined_masks.hpp"
-#include "masked_mapper/masks/never_always_masks.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "never_always_masks.hpp"
 
 namespace masked_mapper {
 namespace {

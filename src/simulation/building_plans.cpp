@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "masked_mapper/simulation/building_assembly.hpp"
-#include "masked_mapper/simulation/floor_planner.hpp"
-#include "masked_mapper/simulation/random_building.hpp"
+#include "building_assembly.hpp"
+#include "floor_planner.hpp"
+#include "random_building.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/floor_planner.hpp"
+#include "floor_planner.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/random_building.hpp"
+#include "random_building.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 
-#include "masked_mapper/simulation/building_assembly.hpp"
-#include "masked_mapper/simulation/floor_planner.hpp"
+#include "building_assembly.hpp"
+#include "floor_planner.hpp"
 #include "masked_mapper/simulation/random_generator.hpp"
 
 namespace masked_mapper {

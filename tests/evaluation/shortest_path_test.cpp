@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/shortest_path.hpp"
+#include "evaluation/shortest_path.hpp"
 
 #include <gtest/gtest.h>
 

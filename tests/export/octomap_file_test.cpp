@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/octomap_file.hpp"
+#include "export/octomap_file.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>

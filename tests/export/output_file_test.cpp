@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/output_file.hpp"
+#include "export/output_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "export/output_file.hpp"
 #include "export/sample_map.hpp"
-#include "masked_mapper/export/output_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

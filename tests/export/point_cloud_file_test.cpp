@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/point_cloud_file.hpp"
+#include "export/point_cloud_file.hpp"
 
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>

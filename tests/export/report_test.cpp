@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/report.hpp"
+#include "export/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/masks/never_always_masks.hpp"
+#include "masks/never_always_masks.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "hand_drawn.hpp"
-#include "masked_mapper/masks/never_always_masks.hpp"
+#include "masks/never_always_masks.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/floor_sketch.hpp"
+#include "simulation/floor_sketch.hpp"
 
 #include <gtest/gtest.h>
 

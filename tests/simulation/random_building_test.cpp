@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/random_building.hpp"
+#include "simulation/random_building.hpp"
 
 #include <gtest/gtest.h>
 

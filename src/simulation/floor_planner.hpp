@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "floor_sketch.hpp"
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/floor_sketch.hpp"
 #include "masked_mapper/simulation/random_generator.hpp"
 
 namespace masked_mapper {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "floor_planner.hpp"
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/floor_planner.hpp"
 
 namespace masked_mapper {
 
