@@ -3,64 +3,17 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "surface_normals.hpp"
 
 namespace masked_mapper {
 namespace {
 
 double Square(double value) { return value * value; }
-
-// Which way the surface of each point faces, in the robot frame: across the line through its
-// neighbours in beam order, towards the robot. A point on its own faces the robot.
-std::vector<Eigen::Vector2f> NormalsOf(const ScanPoints& points) {
-  constexpr std::ptrdiff_t kMostNeighbours = 8;  // to each side: beams close by tell no more
-  constexpr float kReach = 0.15F;                // m, and
-  constexpr float kReachPerMetre = 0.04F;        // of range: far beams lie apart
-  constexpr float kLeastBase = 0.04F;            // m, below which noise turns the line
-  const auto size = static_cast<std::ptrdiff_t>(points.size());
-  const auto at = [&](std::ptrdiff_t i) {
-    const pcl::PointXY& point = points[static_cast<std::size_t>(i)];
-    return Eigen::Vector2f(point.x, point.y);
-  };
-  std::vector<Eigen::Vector2f> normals;
-  normals.reserve(points.size());
-  for (std::ptrdiff_t i = 0; i < size; ++i) {
-    const Eigen::Vector2f point = at(i);
-    const float reach = kReach + kReachPerMetre * point.norm();
-    const auto is_near = [&](std::ptrdiff_t other) {
-      return other >= 0 && other < size && std::abs(other - i) <= kMostNeighbours &&
-             (at(other) - point).squaredNorm() <= reach * reach;
-    };
-    std::ptrdiff_t first = i;
-    std::ptrdiff_t last = i;
-    while (is_near(first - 1)) --first;
-    while (is_near(last + 1)) ++last;
-    const Eigen::Vector2f along = at(last) - at(first);
-    Eigen::Vector2f normal = -point;
-    if (along.squaredNorm() > kLeastBase * kLeastBase) {
-      normal = {-along.y(), along.x()};
-      if (normal.dot(point) > 0.0F) normal = -normal;
-    }
-    normals.push_back(normal);
-  }
-  return normals;
-}
-
-// Between the directions in which most surfaces of a building face (four, square to each other), so
-// that none of them falls on the border of front and back.
-double FrontOf(const std::vector<Eigen::Vector2f>& normals_in_robot, double theta) {
-  double c = 0.0;
-  double s = 0.0;
-  for (const Eigen::Vector2f& normal : normals_in_robot) {
-    const double angle = 4.0 * (std::atan2(normal.y(), normal.x()) + theta);
-    if (!std::isfinite(angle)) continue;
-    c += std::cos(angle);
-    s += std::sin(angle);
-  }
-  return 0.25 * (std::atan2(s, c) + kPi);
-}
 
 }  // namespace
 
@@ -166,9 +119,8 @@ void LocalMap::UpdateAround(std::vector<int> touched) {
   for (const int index : changed) UpdateDistributions(index % width_, index / width_);
 }
 
-void LocalMap::UpdateDistributions(int column, int row) {
+void LocalMap::SumAround(int column, int row, std::array<Moments, kSides + 1>& sums) const {
   const int window = options_.window_cells;
-  Moments sums[kSides + 1];  // the last: of all sides
   for (int dy = -window; dy <= window; ++dy) {
     for (int dx = -window; dx <= window; ++dx) {
       const int neighbour_column = column + dx;
@@ -195,6 +147,35 @@ void LocalMap::UpdateDistributions(int column, int row) {
       }
     }
   }
+}
+
+void LocalMap::Describe(const Moments& sum, int column, int row, Distribution& d) const {
+  const double mx = sum.x / sum.count;
+  const double my = sum.y / sum.count;
+  d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
+  d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
+  const double xx = sum.xx / sum.count - mx * mx;
+  const double xy = sum.xy / sum.count - mx * my;
+  const double yy = sum.yy / sum.count - my * my;
+  const double mean = 0.5 * (xx + yy);
+  const double spread = std::hypot(0.5 * (xx - yy), xy);
+  const double small = std::max(0.0, mean - spread);
+  const double large = mean + spread;
+  // Cosine and sine of twice the direction of the larger variance, and of its half.
+  const double cosine = spread > 0.0 ? 0.5 * (xx - yy) / spread : 1.0;
+  d.normal_x = static_cast<float>(-std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), xy));
+  d.normal_y = static_cast<float>(std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)));
+  d.small = static_cast<float>(small);
+  d.large = static_cast<float>(large);
+  // Three points at the least, and spread over more than one cell: else a line is a guess.
+  d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
+              large > Square(0.5 * options_.cell_m);
+  d.is_known = sum.count >= 2.0;
+}
+
+void LocalMap::UpdateDistributions(int column, int row) {
+  std::array<Moments, kSides + 1> sums;  // the last: of all sides
+  SumAround(column, row, sums);
   Moments& all = sums[kSides];
   std::size_t only_side = kSides;
   for (std::size_t side = 0; side < kSides; ++side) {
@@ -216,28 +197,7 @@ void LocalMap::UpdateDistributions(int column, int row) {
       d = distributions_[(kSides + 1) * slot + only_side];
       continue;
     }
-    const double mx = sum.x / sum.count;
-    const double my = sum.y / sum.count;
-    d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
-    d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
-    const double xx = sum.xx / sum.count - mx * mx;
-    const double xy = sum.xy / sum.count - mx * my;
-    const double yy = sum.yy / sum.count - my * my;
-    const double mean = 0.5 * (xx + yy);
-    const double spread = std::hypot(0.5 * (xx - yy), xy);
-    const double small = std::max(0.0, mean - spread);
-    const double large = mean + spread;
-    // Cosine and sine of twice the direction of the larger variance, and of its half.
-    const double cosine = spread > 0.0 ? 0.5 * (xx - yy) / spread : 1.0;
-    d.normal_x =
-        static_cast<float>(-std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), xy));
-    d.normal_y = static_cast<float>(std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)));
-    d.small = static_cast<float>(small);
-    d.large = static_cast<float>(large);
-    // Three points at the least, and spread over more than one cell: else a line is a guess.
-    d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
-                large > Square(0.5 * options_.cell_m);
-    d.is_known = sum.count >= 2.0;
+    Describe(sum, column, row, d);
   }
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,7 +26,7 @@ struct LocalMapOptions {
   double reach_m = 40.0;        ///< points farther than this from the map's origin are left out
   double point_sigma_m = 0.01;  ///< noise of a point, added to every distribution
   double first_sigma_m = 0.15;  ///< the same in the first iteration, halved with each that follows
-  double outlier_sigmas = 3.0;  ///< distance at which a point has lost half of its say
+  double outlier_sigmas = 3.0;  ///< distance at which a point keeps a quarter of its say
   double guess_outlier_sigmas = 2.0;  ///< the same for the guess an alignment is held by
   double line_ratio = 0.1;  ///< smaller over larger variance, below which points form a line
   int max_iterations = 15;
@@ -95,6 +96,8 @@ class LocalMap {
   }
 
  private:
+  static constexpr std::size_t kSides = 4;
+
   struct Moments {
     double count = 0.0;
     double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
@@ -127,18 +130,19 @@ class LocalMap {
               std::vector<int>& touched);
   void UpdateAround(std::vector<int> touched);
   void UpdateDistributions(int column, int row);
+  /// The moments of each side over the window around a cell, about its center.
+  void SumAround(int column, int row, std::array<Moments, kSides + 1>& sums) const;
+  void Describe(const Moments& sum, int column, int row, Distribution& distribution) const;
   double Step(const ScanPoints& points, const std::vector<std::uint8_t>& sides,
               const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
               Eigen::Vector3d& gradient) const;
-
-  static constexpr std::size_t kSides = 4;
 
   LocalMapOptions options_;
   double front_rad_ = 0.0;                  ///< surfaces that face within 90 deg of it are in front
   Eigen::Vector2d corner_;                  ///< of cell (0, 0), in map
   int width_ = 0;                           ///< cells to a side
   std::vector<std::int32_t> slot_of_cell_;  ///< -1: nothing near
-  std::vector<Moments> moments_;            ///< of each slot the front, then the back
+  std::vector<Moments> moments_;            ///< of each slot, side by side
   std::vector<Distribution> distributions_;  ///< alike
   std::size_t scans_ = 0;
 };
