@@ -35,6 +35,14 @@ struct RunSettings {
   int kill_after_ms = 0;                ///< end it without a warning; 0: do not
 };
 
+/// A bare chroot has none.
+inline bool HasPseudoTerminals() {
+  int ends[2] = {-1, -1};
+  if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) return false;
+  for (const int end : ends) close(end);
+  return true;
+}
+
 /// Reads until all are closed; calls `spoken` once, when the first byte has come.
 inline void ReadAllOf(std::vector<std::pair<int, std::string*>> sources,
                       std::function<void()> spoken) {

@@ -24,6 +24,7 @@ struct Entry {
   void (*read)(const std::uint8_t* data, std::size_t size);
   int spoilt_copies;  ///< of each file
 };
+void PrintTo(const Entry& entry, std::ostream* out) { *out << entry.name; }
 
 class CorpusTest : public ::testing::TestWithParam<Entry> {};
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -262,6 +263,7 @@ struct RealLog {
   double max_range;
   double laser_x;
 };
+void PrintTo(const RealLog& log, std::ostream* out) { *out << log.file; }
 
 class RealLogTest : public ::testing::TestWithParam<RealLog> {};
 
@@ -288,8 +290,13 @@ INSTANTIATE_TEST_SUITE_P(All, RealLogTest,
                                            RealLog{"fr079.clf.gz", 4934, 360, 81.91, -0.04},
                                            RealLog{"mit-csail.clf.gz", 1988, 361, 81.91, 0.0},
                                            RealLog{"malaga-telecom.clf.gz", 225, 361, 80.0, 0.78},
-                                           RealLog{"driving-office.clf.gz", 1159, 626, 25.0,
-                                                   0.16}));
+                                           RealLog{"driving-office.clf.gz", 1159, 626, 25.0, 0.16}),
+                         [](const ::testing::TestParamInfo<RealLog>& info) {
+                           std::string name = info.param.file;
+                           name = name.substr(0, name.find('.'));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace masked_mapper

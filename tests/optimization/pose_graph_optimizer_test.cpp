@@ -351,6 +351,7 @@ struct PublicGraph {
   const char* file;
   double chi2;
 };
+void PrintTo(const PublicGraph& graph, std::ostream* out) { *out << graph.file; }
 
 class PublicGraphs : public testing::TestWithParam<PublicGraph> {};
 
