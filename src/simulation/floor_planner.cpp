@@ -146,36 +146,63 @@ std::size_t FloorPlanner::AddStation(Corridor& corridor, double along, const std
   return way_point;
 }
 
+std::optional<std::pair<double, double>> FloorPlanner::Crossing(const Corridor& a,
+                                                                const Corridor& b) {
+  const Eigen::Vector2d along_a = (a.to - a.from) / a.length;
+  const Eigen::Vector2d along_b = (b.to - b.from) / b.length;
+  const double sine = Cross(along_a, along_b);
+  double at_a = 0.0;
+  double at_b = 0.0;
+  if (std::abs(sine) > 1e-3) {
+    at_a = Cross(b.from - a.from, along_b) / sine;
+    at_b = Cross(b.from - a.from, along_a) / sine;
+  } else {  // end to end, or apart
+    bool meet = false;
+    for (const double end_a : {0.0, a.length}) {
+      for (const double end_b : {0.0, b.length}) {
+        const Eigen::Vector2d gap = a.from + end_a * along_a - b.from - end_b * along_b;
+        if (gap.norm() > kSamePlace) continue;
+        at_a = end_a;
+        at_b = end_b;
+        meet = true;
+      }
+    }
+    if (!meet) return std::nullopt;
+  }
+  if (at_a < -kSamePlace || at_a > a.length + kSamePlace) return std::nullopt;
+  if (at_b < -kSamePlace || at_b > b.length + kSamePlace) return std::nullopt;
+  return std::make_pair(std::clamp(at_a, 0.0, a.length), std::clamp(at_b, 0.0, b.length));
+}
+
+ConvexSpace FloorPlanner::Knuckle(const Corridor& a, const Corridor& b, double at_a) {
+  const Eigen::Vector2d along_a = (a.to - a.from) / a.length;
+  const Eigen::Vector2d along_b = (b.to - b.from) / b.length;
+  const Eigen::Vector2d centre = a.from + at_a * along_a;
+  if (std::abs(Cross(along_a, along_b)) > 0.999) {
+    return ConvexSpace::Rectangle({centre.x(), centre.y(), a.T_building_corridor.theta},
+                                  -0.5 * b.style.width, -0.5 * a.style.width, 0.5 * b.style.width,
+                                  0.5 * a.style.width);
+  }
+  constexpr int kSides = 16;
+  ConvexSpace knuckle;
+  const double radius = 0.5 * std::max(a.style.width, b.style.width) / std::cos(kPi / kSides);
+  for (int side = 0; side < kSides; ++side) {
+    const double angle = a.T_building_corridor.theta + (2 * side + 1) * kPi / kSides;
+    knuckle.corners.emplace_back(centre +
+                                 radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    knuckle.surfaces.emplace_back(Surface::kWall);
+  }
+  return knuckle;
+}
+
 void FloorPlanner::JoinCorridors() {
   for (std::size_t i = 0; i < corridors_.size(); ++i) {
     for (std::size_t j = i + 1; j < corridors_.size(); ++j) {
       Corridor& a = corridors_[i];
       Corridor& b = corridors_[j];
-      const Eigen::Vector2d along_a = (a.to - a.from) / a.length;
-      const Eigen::Vector2d along_b = (b.to - b.from) / b.length;
-      const double sine = Cross(along_a, along_b);
-      double at_a = 0.0;
-      double at_b = 0.0;
-      if (std::abs(sine) > 1e-3) {
-        at_a = Cross(b.from - a.from, along_b) / sine;
-        at_b = Cross(b.from - a.from, along_a) / sine;
-      } else {  // end to end, or apart
-        bool meet = false;
-        for (const double end_a : {0.0, a.length}) {
-          for (const double end_b : {0.0, b.length}) {
-            const Eigen::Vector2d gap = a.from + end_a * along_a - b.from - end_b * along_b;
-            if (gap.norm() > kSamePlace) continue;
-            at_a = end_a;
-            at_b = end_b;
-            meet = true;
-          }
-        }
-        if (!meet) continue;
-      }
-      if (at_a < -kSamePlace || at_a > a.length + kSamePlace) continue;
-      if (at_b < -kSamePlace || at_b > b.length + kSamePlace) continue;
-      at_a = std::clamp(at_a, 0.0, a.length);
-      at_b = std::clamp(at_b, 0.0, b.length);
+      const std::optional<std::pair<double, double>> crossing = Crossing(a, b);
+      if (!crossing) continue;
+      const auto& [at_a, at_b] = *crossing;
       AddStation(a, at_a, "j");
       AddStation(b, at_b, "j");
       const auto mark = [](Corridor& corridor, double at) {
@@ -188,22 +215,7 @@ void FloorPlanner::JoinCorridors() {
       const bool corner = (at_a < kSamePlace || at_a > a.length - kSamePlace) &&
                           (at_b < kSamePlace || at_b > b.length - kSamePlace);
       if (!corner) continue;
-      const Eigen::Vector2d centre = a.from + at_a * along_a;
-      ConvexSpace knuckle;
-      if (std::abs(sine) > 0.999) {
-        knuckle = ConvexSpace::Rectangle({centre.x(), centre.y(), a.T_building_corridor.theta},
-                                         -0.5 * b.style.width, -0.5 * a.style.width,
-                                         0.5 * b.style.width, 0.5 * a.style.width);
-      } else {
-        constexpr int kSides = 16;
-        const double radius = 0.5 * std::max(a.style.width, b.style.width) / std::cos(kPi / kSides);
-        for (int side = 0; side < kSides; ++side) {
-          const double angle = a.T_building_corridor.theta + (2 * side + 1) * kPi / kSides;
-          knuckle.corners.emplace_back(centre +
-                                       radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-          knuckle.surfaces.emplace_back(Surface::kWall);
-        }
-      }
+      const ConvexSpace knuckle = Knuckle(a, b, at_a);
       spaces_.push_back(knuckle);
       reserved_.push_back(knuckle);
     }
@@ -262,11 +274,71 @@ bool FloorPlanner::FreeForRoom(const ConvexSpace& space, double gap) const {
                       [&](const ConvexSpace& other) { return Overlap(space, other, gap); });
 }
 
+bool FloorPlanner::TryNiche(Corridor& corridor, double side, double x, double* end) {
+  const double half = 0.5 * corridor.style.width;
+  const double width = random_.Uniform(1.0, 3.2);
+  const double depth = random_.Uniform(0.35, 1.5);
+  const double y0 = side > 0.0 ? half - 0.2 : -half - depth;
+  const double y1 = side > 0.0 ? half + depth : -half + 0.2;
+  const ConvexSpace niche =
+      ConvexSpace::Rectangle(corridor.T_building_corridor, x, y0, x + width, y1);
+  const ConvexSpace outer =
+      ConvexSpace::Rectangle(corridor.T_building_corridor, x, side > 0.0 ? half + 0.01 : y0,
+                             x + width, side > 0.0 ? y1 : -half - 0.01);
+  if (x + width > corridor.length || !FreeForRoom(outer, 0.0)) return false;
+  spaces_.push_back(niche);
+  reserved_.push_back(outer);
+  corridor.doors[side > 0.0 ? 0 : 1].emplace_back(x, x + width);
+  *end = x + width + random_.Uniform(0.2, 0.6);
+  return true;
+}
+
+bool FloorPlanner::TryRoomOfSize(std::size_t corridor_index, double side, double x,
+                                 const RoomWish& wish, double* end) {
+  const Corridor& corridor = corridors_[corridor_index];
+  const SideStyle& style = side > 0.0 ? corridor.style.left : corridor.style.right;
+  const double half = 0.5 * corridor.style.width;
+  const double width = wish.width;
+  const double depth = wish.depth;
+  const bool closet = wish.closet;
+  Room room;
+  room.corridor = corridor_index;
+  room.side = side;
+  room.x0 = x;
+  room.x1 = x + width;
+  room.v0 = half + style.wall;
+  room.v1 = room.v0 + depth;
+  const double y0 = side > 0.0 ? room.v0 : -room.v1;
+  const double y1 = side > 0.0 ? room.v1 : -room.v0;
+  const ConvexSpace plain =
+      ConvexSpace::Rectangle(corridor.T_building_corridor, room.x0, y0, room.x1, y1);
+  if (!FreeForRoom(plain, kRoomGap)) return false;
+  const bool window = !closet && random_.Chance(style.window_share);
+  const double window_from = random_.Uniform(0.08, 0.3);
+  const double window_to = random_.Uniform(0.7, 0.92);
+  spaces_.push_back(window ? RectangleWithWindow(corridor.T_building_corridor, room.x0, y0, room.x1,
+                                                 y1, side > 0.0 ? 2 : 0, window_from, window_to)
+                           : plain);
+  reserved_.push_back(plain);
+  const bool pane = wish.pane && width > 3.4;
+  room.door_width = closet ? 0.8 : random_.Chance(0.12) && width > 3.5 ? 1.5 : 0.95;
+  const double first = room.x0 + 0.5 * room.door_width + 0.15;
+  const double last = room.x1 - 0.5 * room.door_width - 0.15;
+  const double where = random_.Uniform();
+  room.door_x = where < 0.35  ? first + 0.1 * random_.Uniform()
+                : where < 0.7 ? last - 0.1 * random_.Uniform()
+                              : random_.Uniform(first, last);
+  room.open = random_.Chance(style.open_share);
+  DrawRoomFront(room, style, pane);
+  rooms_.push_back(room);
+  *end = room.x1 + kRoomGap + 0.02 + (random_.Chance(0.15) ? random_.Uniform(0.1, 0.7) : 0.0);
+  return true;
+}
+
 bool FloorPlanner::TryRoom(std::size_t corridor_index, double side, double x, double usual_depth,
                            double* end) {
   Corridor& corridor = corridors_[corridor_index];
   const SideStyle& style = side > 0.0 ? corridor.style.left : corridor.style.right;
-  const double half = 0.5 * corridor.style.width;
   const double kind = random_.Uniform();
   const double full_width = random_.Uniform(style.width_min, style.width_max);
   // The outer wall of a wing is mostly one line.
@@ -277,63 +349,18 @@ bool FloorPlanner::TryRoom(std::size_t corridor_index, double side, double x, do
     *end = x + random_.Uniform(0.8, 3.0);
     return true;
   }
-  if (kind < 0.11) {  // a niche, open to the corridor: a kitchenette, a window seat, a fire hose
-    const double width = random_.Uniform(1.0, 3.2);
-    const double depth = random_.Uniform(0.35, 1.5);
-    const double y0 = side > 0.0 ? half - 0.2 : -half - depth;
-    const double y1 = side > 0.0 ? half + depth : -half + 0.2;
-    const ConvexSpace niche =
-        ConvexSpace::Rectangle(corridor.T_building_corridor, x, y0, x + width, y1);
-    const ConvexSpace outer =
-        ConvexSpace::Rectangle(corridor.T_building_corridor, x, side > 0.0 ? half + 0.01 : y0,
-                               x + width, side > 0.0 ? y1 : -half - 0.01);
-    if (x + width > corridor.length || !FreeForRoom(outer, 0.0)) return false;
-    spaces_.push_back(niche);
-    reserved_.push_back(outer);
-    corridor.doors[side > 0.0 ? 0 : 1].emplace_back(x, x + width);
-    *end = x + width + random_.Uniform(0.2, 0.6);
-    return true;
-  }
-  const bool closet = kind > 0.90;
+  // A niche, open to the corridor: a kitchenette, a window seat, a fire hose.
+  if (kind < 0.11) return TryNiche(corridor, side, x, end);
+  RoomWish wish;
+  wish.closet = kind > 0.90;
+  wish.pane = !wish.closet && kind < 0.19;
   for (const double depth_share : {1.0, 0.75, 0.55}) {
     for (const double width_share : {1.0, 0.7, 0.5}) {
-      const double width = closet ? std::max(1.5, 0.45 * full_width * width_share)
-                                  : std::max(2.2, full_width * width_share);
-      const double depth = std::max(1.6, full_depth * depth_share * (closet ? 0.6 : 1.0));
-      if (x + width > corridor.length) continue;
-      Room room;
-      room.corridor = corridor_index;
-      room.side = side;
-      room.x0 = x;
-      room.x1 = x + width;
-      room.v0 = half + style.wall;
-      room.v1 = room.v0 + depth;
-      const double y0 = side > 0.0 ? room.v0 : -room.v1;
-      const double y1 = side > 0.0 ? room.v1 : -room.v0;
-      const ConvexSpace plain =
-          ConvexSpace::Rectangle(corridor.T_building_corridor, room.x0, y0, room.x1, y1);
-      if (!FreeForRoom(plain, kRoomGap)) continue;
-      const bool window = !closet && random_.Chance(style.window_share);
-      const double window_from = random_.Uniform(0.08, 0.3);
-      const double window_to = random_.Uniform(0.7, 0.92);
-      spaces_.push_back(window ? RectangleWithWindow(corridor.T_building_corridor, room.x0, y0,
-                                                     room.x1, y1, side > 0.0 ? 2 : 0, window_from,
-                                                     window_to)
-                               : plain);
-      reserved_.push_back(plain);
-      const bool pane = !closet && kind < 0.19 && width > 3.4;
-      room.door_width = closet ? 0.8 : random_.Chance(0.12) && width > 3.5 ? 1.5 : 0.95;
-      const double first = room.x0 + 0.5 * room.door_width + 0.15;
-      const double last = room.x1 - 0.5 * room.door_width - 0.15;
-      const double where = random_.Uniform();
-      room.door_x = where < 0.35  ? first + 0.1 * random_.Uniform()
-                    : where < 0.7 ? last - 0.1 * random_.Uniform()
-                                  : random_.Uniform(first, last);
-      room.open = random_.Chance(style.open_share);
-      DrawRoomFront(room, style, pane);
-      rooms_.push_back(room);
-      *end = room.x1 + kRoomGap + 0.02 + (random_.Chance(0.15) ? random_.Uniform(0.1, 0.7) : 0.0);
-      return true;
+      wish.width = wish.closet ? std::max(1.5, 0.45 * full_width * width_share)
+                               : std::max(2.2, full_width * width_share);
+      wish.depth = std::max(1.6, full_depth * depth_share * (wish.closet ? 0.6 : 1.0));
+      if (x + wish.width > corridor.length) continue;
+      if (TryRoomOfSize(corridor_index, side, x, wish, end)) return true;
     }
   }
   return false;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,10 +104,25 @@ class FloorPlanner {
     Eigen::Vector2d axis_direction;  ///< towards the corridor
   };
 
+  /// A room as it is wished for.
+  struct RoomWish {
+    double width = 0.0;
+    double depth = 0.0;
+    bool closet = false;
+    bool pane = false;  ///< a window to the corridor, where it is wide enough
+  };
+
+  /// Where two centre lines meet, m along each.
+  static std::optional<std::pair<double, double>> Crossing(const Corridor& a, const Corridor& b);
+  /// What fills the outer corner where the ends of two corridors meet, `at_a` m along the first.
+  static ConvexSpace Knuckle(const Corridor& a, const Corridor& b, double at_a);
   void JoinCorridors();
   void DrawCorridor(const Corridor& corridor);
   void FillSide(std::size_t corridor_index, double side);
   bool TryRoom(std::size_t corridor_index, double side, double x, double usual_depth, double* end);
+  bool TryNiche(Corridor& corridor, double side, double x, double* end);
+  bool TryRoomOfSize(std::size_t corridor_index, double side, double x, const RoomWish& wish,
+                     double* end);
   void DrawRoomFront(const Room& room, const SideStyle& style, bool pane);
   void VisitRooms();
   void FurnishRoom(const Room& room);

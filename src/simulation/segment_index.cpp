@@ -97,19 +97,14 @@ std::size_t SegmentIndex::Row(double y) const {
   return static_cast<std::size_t>(std::clamp(row, 0.0, static_cast<double>(rows_ - 1)));
 }
 
-std::optional<SegmentIndex::Hit> SegmentIndex::Cast(const Eigen::Vector2d& origin,
-                                                    const Eigen::Vector2d& direction,
-                                                    double min_range, double max_range) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  // The part of the ray that lies over the grid.
-  double enter = min_range;
-  double leave = max_range;
+bool SegmentIndex::ClipToGrid(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
+                              double& enter, double& leave) const {
   const double extent[2] = {cell_ * static_cast<double>(columns_),
                             cell_ * static_cast<double>(rows_)};
   for (int axis = 0; axis < 2; ++axis) {
     const double offset = low_[axis] - origin[axis];
     if (direction[axis] == 0.0) {
-      if (offset > kBoxSlack || offset + extent[axis] < -kBoxSlack) return std::nullopt;
+      if (offset > kBoxSlack || offset + extent[axis] < -kBoxSlack) return false;
       continue;
     }
     const double t0 = (offset - kBoxSlack) / direction[axis];
@@ -117,7 +112,32 @@ std::optional<SegmentIndex::Hit> SegmentIndex::Cast(const Eigen::Vector2d& origi
     enter = std::max(enter, std::min(t0, t1));
     leave = std::min(leave, std::max(t0, t1));
   }
-  if (!(enter < leave)) return std::nullopt;
+  return enter < leave;
+}
+
+bool SegmentIndex::NearestInCell(std::size_t cell, const Eigen::Vector2d& origin,
+                                 const Eigen::Vector2d& direction, double min_range, bool found,
+                                 Hit& best) const {
+  for (std::uint32_t k = cell_begin_[cell]; k < cell_begin_[cell + 1]; ++k) {
+    const std::uint32_t index = cell_segments_[k];
+    const std::optional<double> range = RayRange(origin, direction, segments_[index], min_range);
+    if (!range) continue;
+    if (*range < best.range || (found && *range == best.range && index < best.segment)) {
+      best = {*range, index};
+      found = true;
+    }
+  }
+  return found;
+}
+
+std::optional<SegmentIndex::Hit> SegmentIndex::Cast(const Eigen::Vector2d& origin,
+                                                    const Eigen::Vector2d& direction,
+                                                    double min_range, double max_range) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // The part of the ray that lies over the grid.
+  double enter = min_range;
+  double leave = max_range;
+  if (!ClipToGrid(origin, direction, enter, leave)) return std::nullopt;
 
   const Eigen::Vector2d start = origin + enter * direction;
   auto column = static_cast<std::ptrdiff_t>(Column(start.x()));
@@ -136,15 +156,7 @@ std::optional<SegmentIndex::Hit> SegmentIndex::Cast(const Eigen::Vector2d& origi
   while (true) {
     const std::size_t cell =
         static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
-    for (std::uint32_t k = cell_begin_[cell]; k < cell_begin_[cell + 1]; ++k) {
-      const std::uint32_t index = cell_segments_[k];
-      const std::optional<double> range = RayRange(origin, direction, segments_[index], min_range);
-      if (!range) continue;
-      if (*range < best.range || (found && *range == best.range && index < best.segment)) {
-        best = {*range, index};
-        found = true;
-      }
-    }
+    found = NearestInCell(cell, origin, direction, min_range, found, best);
     const double border = std::min(border_x, border_y);
     if (found && best.range <= border) break;
     if (border >= leave) break;

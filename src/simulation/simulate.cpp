@@ -47,95 +47,154 @@ void CheckRate(double rate, const char* what) {
   }
 }
 
-SimulationSummary SimulateUsualTour(const Building& building, const SimulationOptions& options,
-                                    const SimulationNoise& noise, const SimulationSink& sink) {
+void CheckOptions(const SimulationOptions& options) {
   CheckRate(options.odometry_rate, "odometry");
   CheckRate(options.pressure.rate, "barometer");
   CheckRate(options.acceleration.rate, "accelerometer");
   if (!(options.length >= 0.0 && options.length <= 1e6)) {
     throw InputError("the length of a tour is not within 0 to 1000 km");
   }
-  CheckBuilding(building, options.drive.robot_radius + kClearance);
+}
 
+Tour TourOf(const Building& building, const SimulationOptions& options) {
   TourOptions tour_options;
   tour_options.seed = options.seed;
   tour_options.length = options.length;
   tour_options.visits = options.visits;
-  const Tour tour = PlanTour(building, tour_options);
+  return PlanTour(building, tour_options);
+}
+
+RobotDrive DriveOf(const Building& building, const Tour& tour, const SimulationOptions& options) {
   DriveOptions drive_options = options.drive;
   drive_options.seed = options.seed;
   if (options.usual_rest) drive_options.rest_per_metre = building.usual_tour.rest_per_metre;
-  const RobotDrive drive(building, tour, drive_options);
+  return RobotDrive(building, tour, drive_options);
+}
 
-  LidarSimulation lidar(building, options.lidar, noise.lidar, options.seed);
-  OdometrySimulation odometry(noise.odometry, options.seed);
-  PressureSimulation pressure(options.pressure, noise.pressure, options.seed);
-  AccelerationSimulation acceleration(noise.acceleration, options.seed);
-  Ticks scan_ticks(options.lidar.rate, drive.Duration());
-  Ticks odometry_ticks(options.odometry_rate, drive.Duration());
-  Ticks pressure_ticks(options.pressure.rate, drive.Duration());
-  Ticks acceleration_ticks(options.acceleration.rate, drive.Duration());
+/// The sensors of a robot on its drive, each at its own rate.
+class DrivenSensors {
+ public:
+  DrivenSensors(const Building& building, const RobotDrive& drive, const SimulationOptions& options,
+                const SimulationNoise& noise, const SimulationSink& sink)
+      : building_(building),
+        drive_(drive),
+        options_(options),
+        sink_(sink),
+        lidar_(building, options.lidar, noise.lidar, options.seed),
+        odometry_(noise.odometry, options.seed),
+        pressure_(options.pressure, noise.pressure, options.seed),
+        acceleration_(noise.acceleration, options.seed),
+        scan_ticks_(options.lidar.rate, drive.Duration()),
+        odometry_ticks_(options.odometry_rate, drive.Duration()),
+        pressure_ticks_(options.pressure.rate, drive.Duration()),
+        acceleration_ticks_(options.acceleration.rate, drive.Duration()),
+        start_(drive.At(0.0)),
+        T_building_world_(Snapped(start_.T_building_robot)),
+        T_building_before_(T_building_world_) {}
 
-  const RobotState start = drive.At(0.0);
-  const Pose2 T_building_world = Snapped(start.T_building_robot);
-  Pose2 T_building_before = T_building_world;
-  double before = 0.0;
-  std::string label;
+  const Pose2& T_building_world() const { return T_building_world_; }
+  std::size_t start_floor() const { return start_.floor; }
+
+  /// Measures all along the drive; how many scans there were.
+  std::uint64_t Drive() {
+    while (true) {
+      const double time = std::min({scan_ticks_.Next(), odometry_ticks_.Next(),
+                                    pressure_ticks_.Next(), acceleration_ticks_.Next()});
+      if (time == Ticks::kNever) break;
+      RobotState state = drive_.At(time);
+      state.T_building_robot = Snapped(state.T_building_robot);
+      MeasureAt(time, state);
+    }
+    if (sink_.progress) sink_.progress(1.0);
+    return scans_;
+  }
+
+ private:
+  void Emit(const Observation& observation) const {
+    if (sink_.observation) sink_.observation(observation);
+  }
+
+  /// All that is due, in a fixed order: label, pressure, acceleration, odometry, scan.
+  void MeasureAt(double time, const RobotState& state) {
+    const double stamp = options_.first_stamp + time;
+    const bool scan_now = scan_ticks_.Next() <= time;
+    const std::string label_now = state.in_transit ? "-" : building_.floors[state.floor].label;
+    if (options_.floor_labels && scan_now && label_now != label_) {
+      Emit(FloorLabel{stamp, label_now});
+      label_ = label_now;
+    }
+    if (pressure_ticks_.Next() <= time) {
+      pressure_ticks_.Pass();
+      Emit(PressureReading{stamp, pressure_.Measure(time, state.elevation)});
+    }
+    if (acceleration_ticks_.Next() <= time) {
+      acceleration_ticks_.Pass();
+      Emit(AccelerationReading{stamp, acceleration_.Measure(state)});
+    }
+    MeasureOdometry(time, stamp, state, scan_now);
+    if (scan_now) MeasureScan(time, stamp, state, label_now);
+  }
+
+  void MeasureOdometry(double time, double stamp, const RobotState& state, bool scan_now) {
+    const bool odometry_now = odometry_ticks_.Next() <= time;
+    if (odometry_now || scan_now) {
+      odometry_.Advance(Between(T_building_before_, state.T_building_robot), time - before_);
+      T_building_before_ = state.T_building_robot;
+      before_ = time;
+    }
+    if (!odometry_now) return;
+    odometry_ticks_.Pass();
+    if (!scan_now) Emit(OdometryReading{stamp, odometry_.T_odom_robot()});
+  }
+
+  void MeasureScan(double time, double stamp, const RobotState& state, const std::string& label) {
+    scan_ticks_.Pass();
+    ++scans_;
+    if (sink_.truth) {
+      sink_.truth({stamp, Between(T_building_world_, state.T_building_robot),
+                   state.elevation - start_.elevation, label});
+    }
+    LaserScan scan = lidar_.Scan(time, state);
+    scan.stamp = stamp;
+    scan.T_odom_robot = odometry_.T_odom_robot();
+    Emit(scan);
+    if (sink_.progress && scans_ % 256 == 0) sink_.progress(time / drive_.Duration());
+  }
+
+  const Building& building_;
+  const RobotDrive& drive_;
+  const SimulationOptions& options_;
+  const SimulationSink& sink_;
+  LidarSimulation lidar_;
+  OdometrySimulation odometry_;
+  PressureSimulation pressure_;
+  AccelerationSimulation acceleration_;
+  Ticks scan_ticks_;
+  Ticks odometry_ticks_;
+  Ticks pressure_ticks_;
+  Ticks acceleration_ticks_;
+  RobotState start_;
+  Pose2 T_building_world_;
+  Pose2 T_building_before_;
+  double before_ = 0.0;
+  std::string label_;
+  std::uint64_t scans_ = 0;
+};
+
+SimulationSummary SimulateUsualTour(const Building& building, const SimulationOptions& options,
+                                    const SimulationNoise& noise, const SimulationSink& sink) {
+  CheckOptions(options);
+  CheckBuilding(building, options.drive.robot_radius + kClearance);
+  const Tour tour = TourOf(building, options);
+  const RobotDrive drive = DriveOf(building, tour, options);
+  DrivenSensors sensors(building, drive, options, noise, sink);
   SimulationSummary summary;
   summary.seconds = drive.Duration();
   summary.length = drive.Length();
   summary.floor_changes = tour.transits.size();
-  summary.T_building_world = T_building_world;
-  summary.start_floor = building.floors[start.floor].label;
-
-  while (true) {
-    const double time = std::min({scan_ticks.Next(), odometry_ticks.Next(), pressure_ticks.Next(),
-                                  acceleration_ticks.Next()});
-    if (time == Ticks::kNever) break;
-    const double stamp = options.first_stamp + time;
-    RobotState state = drive.At(time);
-    state.T_building_robot = Snapped(state.T_building_robot);
-    const auto emit = [&](const Observation& observation) {
-      if (sink.observation) sink.observation(observation);
-    };
-    const bool scan_now = scan_ticks.Next() <= time;
-    const std::string label_now = state.in_transit ? "-" : building.floors[state.floor].label;
-    if (options.floor_labels && scan_now && label_now != label) {
-      emit(FloorLabel{stamp, label_now});
-      label = label_now;
-    }
-    if (pressure_ticks.Next() <= time) {
-      pressure_ticks.Pass();
-      emit(PressureReading{stamp, pressure.Measure(time, state.elevation)});
-    }
-    if (acceleration_ticks.Next() <= time) {
-      acceleration_ticks.Pass();
-      emit(AccelerationReading{stamp, acceleration.Measure(state)});
-    }
-    const bool odometry_now = odometry_ticks.Next() <= time;
-    if (odometry_now || scan_now) {
-      odometry.Advance(Between(T_building_before, state.T_building_robot), time - before);
-      T_building_before = state.T_building_robot;
-      before = time;
-    }
-    if (odometry_now) {
-      odometry_ticks.Pass();
-      if (!scan_now) emit(OdometryReading{stamp, odometry.T_odom_robot()});
-    }
-    if (!scan_now) continue;
-    scan_ticks.Pass();
-    ++summary.scans;
-    if (sink.truth) {
-      sink.truth({stamp, Between(T_building_world, state.T_building_robot),
-                  state.elevation - start.elevation, label_now});
-    }
-    LaserScan scan = lidar.Scan(time, state);
-    scan.stamp = stamp;
-    scan.T_odom_robot = odometry.T_odom_robot();
-    emit(scan);
-    if (sink.progress && summary.scans % 256 == 0) sink.progress(time / drive.Duration());
-  }
-  if (sink.progress) sink.progress(1.0);
+  summary.T_building_world = sensors.T_building_world();
+  summary.start_floor = building.floors[sensors.start_floor()].label;
+  summary.scans = sensors.Drive();
   return summary;
 }
 

@@ -55,6 +55,14 @@ class SegmentIndex {
  private:
   std::size_t Column(double x) const;
   std::size_t Row(double y) const;
+  /// Narrows [enter, leave] to the part of a ray that lies over the grid; whether there is any.
+  bool ClipToGrid(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction, double& enter,
+                  double& leave) const;
+  /// Takes a hit in the cell that is nearer than `best`; `found`, and what comes back: whether
+  /// `best` is a hit at all.
+  bool NearestInCell(std::size_t cell, const Eigen::Vector2d& origin,
+                     const Eigen::Vector2d& direction, double min_range, bool found,
+                     Hit& best) const;
 
   std::vector<Segment> segments_;
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
