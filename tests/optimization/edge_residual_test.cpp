@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
@@ -89,6 +90,18 @@ TEST(EdgeResidual, SingularAndTinyCovariancesActAsRigid) {
   const EdgeResidual ridge({{}, covariance});
   EXPECT_NEAR(ridge.Chi2({}, {0.2, 0.0, 0.0}), 1.0, 1e-6);
   EXPECT_GT(ridge.Chi2({}, {0.0, 0.2, 0.0}), 1e6);
+}
+
+// Where the largest variance drowns the smallest, every covariance that is one can be divided by.
+TEST(EdgeResidual, VariancesMayBeFarApart) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  for (const double largest : {1e2, 1e6, 1e9, 1e11}) {
+    const Eigen::Vector3d variances(largest, 0.5 * largest, 0.0);
+    const EdgeResidual edge({{}, turn * variances.asDiagonal() * turn.transpose()});
+    const Eigen::Vector3d along = 1e-3 * std::sqrt(largest) * turn.col(0);
+    EXPECT_LT(edge.Chi2({}, {along.x(), along.y(), 0.0}), 1e30) << largest;
+  }
 }
 
 TEST(EdgeResidualDeathTest, WhatIsNoCovarianceStops) {
