@@ -17,11 +17,6 @@ namespace {
 
 std::int64_t Id(std::size_t index) { return static_cast<std::int64_t>(index); }
 
-template <std::size_t kSize, typename Enumeration>
-const char* NameOf(const std::array<const char*, kSize>& names, Enumeration value) {
-  return names.at(static_cast<std::size_t>(value));
-}
-
 void BindPose(const Pose2& pose, Statement& statement) {
   statement.Bind(pose.x).Bind(pose.y).Bind(pose.theta);
 }
