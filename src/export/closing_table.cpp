@@ -70,6 +70,18 @@ std::string DriveLines(const std::vector<DriveFacts>& drives) {
   return text;
 }
 
+std::string DoubtLines(const Summary& summary) {
+  std::string text;
+  for (const Doubt& doubt : summary.doubts) {
+    const std::string& floor = summary.floors.at(static_cast<std::size_t>(doubt.floor)).label;
+    text += Line("DOUBT", std::string(Name(doubt.kind)),
+                 doubt.text + " (floor " + floor + ", " + FixedText(doubt.x, 1) + ", " +
+                     FixedText(doubt.y, 1) + ")" +
+                     (doubt.edit.empty() ? "" : "; edits.yaml: " + doubt.edit));
+  }
+  return text;
+}
+
 std::string SecondsLines(const Summary& summary) {
   const StageSeconds& seconds = summary.seconds;
   const std::vector<std::pair<std::string, double>> stages = {
@@ -92,7 +104,7 @@ std::string SecondsLines(const Summary& summary) {
 
 std::string ClosingTable(const Summary& summary) {
   return CountLines(summary) + FloorLines(summary.floors) + DriveLines(summary.drives) +
-         SecondsLines(summary);
+         DoubtLines(summary) + SecondsLines(summary);
 }
 
 }  // namespace masked_mapper

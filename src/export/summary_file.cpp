@@ -112,6 +112,22 @@ Json DrivesJson(const std::vector<DriveFacts>& drives) {
   return json;
 }
 
+Json DoubtsJson(const std::vector<Doubt>& doubts, const std::vector<Summary::FloorEntry>& floors) {
+  Json json = Json::array();
+  for (const Doubt& doubt : doubts) {
+    json.push_back({{"kind", Name(doubt.kind)},
+                    {"floor", floors.at(static_cast<std::size_t>(doubt.floor)).label},
+                    {"x", Rounded(doubt.x, 1000.0)},
+                    {"y", Rounded(doubt.y, 1000.0)},
+                    {"t_a", doubt.t_a},
+                    {"t_b", doubt.t_b},
+                    {"size_m", Rounded(doubt.size_m, 1000.0)},
+                    {"text", doubt.text}});
+    if (!doubt.edit.empty()) json.back()["edit"] = doubt.edit;
+  }
+  return json;
+}
+
 Json SecondsJson(const StageSeconds& seconds) {
   const auto rounded = [](double value) { return Rounded(value, 1e4); };
   return {{"read", rounded(seconds.read)},
@@ -159,6 +175,7 @@ Summary Summarise(const BuildingMap& result, const RunDescription& run,
   summary.seconds = WithTotal(result.seconds);
   summary.peak_memory_mib = PeakMemoryMib();
   summary.warnings = WarningsOf(result);
+  summary.doubts = FindDoubts(result);
   if (result.drives.size() > 1) summary.drives = FactsOfDrives(result);
   return summary;
 }
@@ -172,6 +189,7 @@ std::string SummaryText(const Summary& summary) {
                {"seconds", SecondsJson(summary.seconds)},
                {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
                {"options", SettingsJson(summary.run.settings)},
+               {"doubts", DoubtsJson(summary.doubts, summary.floors)},
                {"warnings", summary.warnings}};
   if (!summary.drives.empty()) json["drives"] = DrivesJson(summary.drives);
   // A path may hold bytes that are no UTF-8.

@@ -43,7 +43,7 @@ TEST(SummaryFile, HasTheKeysOfTheContract) {
   const Json json = Written(SampleSummary());
   using Names = std::vector<std::string>;
   EXPECT_EQ(Keys(json), (Names{"log", "mask", "motion_source", "counts", "floors", "seconds",
-                               "peak_memory_mib", "options", "warnings"}));
+                               "peak_memory_mib", "options", "doubts", "warnings"}));
   EXPECT_EQ(Keys(json["counts"]), (Names{"observations", "scans", "nodes", "scan_nodes",
                                          "odometry_nodes", "attempted", "matched", "validated"}));
   EXPECT_EQ(Keys(json["floors"][0]),
@@ -112,7 +112,7 @@ TEST(SummaryFile, NumbersAreFiniteAndTextIsUtf8) {
 TEST(SummaryFile, RejectionsByFrequency) {
   const Summary summary = SampleSummary();
   ASSERT_EQ(summary.rejections.size(), 3U);
-  EXPECT_EQ(summary.rejections[0].first, "score, below 42.5 %");
+  EXPECT_EQ(summary.rejections[0].first, "score below the minimum");
   EXPECT_EQ(summary.rejections[0].second, 2U);
 }
 

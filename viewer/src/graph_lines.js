@@ -14,9 +14,19 @@ export function nodeEnd(nodes, id) {
   };
 }
 
-/** Trajectory, edges and attempts, each with its layer and floor (-1: between floors). */
+/** A cross that marks the place of a doubt. */
+function cross({x, y, floor}) {
+  const size = 1.2;
+  const end = (dx, dy) => {
+    const place = [x + dx, y + dy];
+    return {before: place, after: place, from: floor, to: floor, fraction: 0};
+  };
+  return [end(-size, -size), end(size, size), end(-size, size), end(size, -size)];
+}
+
+/** Trajectory, edges, attempts and doubts, each with its layer and floor (-1: between floors). */
 export function makeLines(model, materials) {
-  const {trajectory, edges, attempts, nodes} = model;
+  const {trajectory, edges, attempts, nodes, doubts} = model;
   // layer -> floor (or -1: between floors) -> ends
   const sets = new Map();
   const add = (layer, floor, ends, items) => {
@@ -48,6 +58,7 @@ export function makeLines(model, materials) {
   for (const attempt of attempts) {
     add(attempt.state, attempt.floor, [nodeEnd(nodes, attempt.a), nodeEnd(nodes, attempt.b)], attempt);
   }
+  for (const doubt of doubts) add('doubts', doubt.floor, cross(doubt));
   const all = [];
   for (const {layer, floor, ends, items} of sets.values()) {
     const lines = new MovingLines(

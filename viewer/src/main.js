@@ -182,10 +182,11 @@ function main() {
   closuresPage(byId('page-closures'), model, pick);
   plotsPage(byId('page-plots'), model, pick);
   runPage(byId('page-run'), model);
-  if (summary.warnings.length) {
+  const notices = summary.warnings.length + model.doubts.length;
+  if (notices) {
     byId('tab-run').append(element('span', {
-      class: 'badge', 'aria-label': `${summary.warnings.length} warnings`,
-    }, String(summary.warnings.length)));
+      class: 'badge', 'aria-label': `${model.doubts.length} doubts, ${summary.warnings.length} warnings`,
+    }, String(notices)));
   }
   followTabs();
   document.documentElement.dataset.blend = '1';

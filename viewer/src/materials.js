@@ -16,6 +16,7 @@ export function makeMaterials() {
     odometry: line(1.6),
     floor_change: line(2.4, {dashed: true, dashSize: 0.5, gapSize: 0.35}),
     by_hand: line(2.4),
+    doubts: line(4),
     highlight: line(5),
   };
   for (const [state, look] of Object.entries(closureStates)) materials[state] = line(look.width);
@@ -52,7 +53,7 @@ export function applyColours(materials, floorGroups) {
   }
   const colours = {
     trajectory: '--trajectory', odometry: '--odometry', floor_change: '--floor-change',
-    by_hand: '--by-hand', highlight: '--highlight',
+    by_hand: '--by-hand', doubts: '--audited', highlight: '--highlight',
   };
   for (const [state, look] of Object.entries(closureStates)) colours[state] = look.colour;
   for (const [name, variable] of Object.entries(colours)) materials[name].color = cssColour(variable);

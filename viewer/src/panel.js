@@ -89,7 +89,8 @@ export function mapPage(page, model, scene, {blendTo, separation}) {
           layer('scan_nodes', 'Scan nodes', key('dot', '--node'), scanNodes),
           layer('odometry_nodes', 'Odometry-only nodes', key('dot small', '--odometry'), nodes.count - scanNodes),
           layer('odometry', 'Odometry edges', key('line', '--odometry'), kindCount('odometry'), false),
-          layer('floor_change', 'Floor changes', key('line dashed', '--floor-change'), kindCount('floor_change')))),
+          layer('floor_change', 'Floor changes', key('line dashed', '--floor-change'), kindCount('floor_change')),
+          model.doubts.length ? layer('doubts', 'Doubts', key('line', '--audited'), model.doubts.length) : null)),
       part('Closures', element('ul', {class: 'toggles'},
           Object.entries(closureStates).map(([state, look]) =>
               layer(state, look.name, key('line', look.colour), numberOf(state), state !== 'rejected_score')),
@@ -189,6 +190,10 @@ export function runPage(page, model) {
   const total = summary.seconds.total;
   const options = Object.entries(summary.options);
 
+  if (model.doubts.length) {
+    page.append(part('Doubts', model.doubts.map(({floor, text, edit}) => element('p', {class: 'notice doubt'},
+        `Floor ${model.floors[floor].label}: ${text}`, edit ? element('code', {}, edit) : null))));
+  }
   if (summary.warnings.length) {
     page.append(part('Warnings', summary.warnings.map((text) => element('p', {class: 'notice'}, text))));
   }

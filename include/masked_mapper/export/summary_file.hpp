@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "masked_mapper/doubt/doubt.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
@@ -54,6 +55,7 @@ struct Summary {
   StageSeconds seconds;
   double peak_memory_mib = 0.0;
   std::vector<std::string> warnings;
+  std::vector<Doubt> doubts;       ///< empty: the map holds together
   std::vector<DriveFacts> drives;  ///< of a map of several logs; else none
 };
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What of a finished map does not hold. Two visits of one place must have seen the same: where one
+// saw through what the other calls a wall, one of them lies wrong. A closure or a way that the
+// solved graph has to bend by far more than it may be off contradicts the rest. A map without
+// doubts is one that can be trusted. Ours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "masked_mapper/map/building_map.hpp"
+
+namespace masked_mapper {
+
+enum class DoubtKind {
+  kWalls,    ///< two visits of one place do not see the same walls
+  kClosure,  ///< a closure that the rest of the map contradicts
+  kMotion,   ///< a way between two nodes that the rest of the map contradicts
+  kApart,    ///< a drive that nothing ties to the others
+};
+
+struct Doubt {
+  DoubtKind kind = DoubtKind::kWalls;
+  FloorId floor = 0;
+  double x = 0.0;       ///< m, in the world
+  double y = 0.0;       ///< m
+  double t_a = 0.0;     ///< s, the span of the drive that it is about
+  double t_b = 0.0;     ///< s
+  double size_m = 0.0;  ///< by how much the two sides disagree, as far as that can be told
+  std::string text;     ///< for people
+  std::string edit;     ///< the line of edits.yaml that would mend it; empty: none is known
+};
+
+/// "walls", "closure", "motion", "apart".
+const char* Name(DoubtKind kind);
+
+/// In order of kinds, then of stamps.
+std::vector<Doubt> FindDoubts(const BuildingMap& map);
+
+}  // namespace masked_mapper

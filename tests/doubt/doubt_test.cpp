@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/doubt/doubt.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/ring_logs.hpp"
+
+namespace masked_mapper {
+namespace {
+
+/// Twice and more round a ring of corridors, mapped right.
+BuildingMap RightMap() {
+  static const BuildingMap map = MapOf(First(), "doubt.log");
+  return map;
+}
+
+/// The poses from a share of the drive on, moved by `T_moved` about where it begins.
+BuildingMap WithTheRestMoved(const BuildingMap& right, double share, const Pose2& T_moved) {
+  BuildingMap map = right;
+  const auto first = static_cast<std::size_t>(share * static_cast<double>(map.trajectory.size()));
+  const Pose2 T_world_first = map.trajectory[first].T_world_robot;
+  const Pose2 T_to_from = T_world_first * T_moved * Inverse(T_world_first);
+  for (std::size_t i = first; i < map.trajectory.size(); ++i) {
+    map.trajectory[i].T_world_robot = T_to_from * map.trajectory[i].T_world_robot;
+  }
+  return map;
+}
+
+TEST(Doubt, OfARightMapThereIsNone) {
+  for (const Doubt& doubt : FindDoubts(RightMap())) ADD_FAILURE() << doubt.text;
+}
+
+TEST(Doubt, ASecondVisitThatHangsBesideTheFirstIsListedAtItsPlace) {
+  for (const Pose2& T_moved :
+       {Pose2{0.0, 0.8, 0.0}, Pose2{0.0, 0.0, DegToRad(8.0)}, Pose2{0.5, -0.6, DegToRad(-5.0)}}) {
+    const BuildingMap wrong = WithTheRestMoved(RightMap(), 0.6, T_moved);
+    const std::vector<Doubt> doubts = FindDoubts(wrong);
+    const auto walls = std::find_if(doubts.begin(), doubts.end(), [](const Doubt& doubt) {
+      return doubt.kind == DoubtKind::kWalls;
+    });
+    ASSERT_NE(walls, doubts.end())
+        << T_moved.x << " m, " << T_moved.y << " m, " << RadToDeg(T_moved.theta) << " deg";
+    EXPECT_LT(walls->t_a, walls->t_b);
+    EXPECT_GE(walls->size_m, 4.0);
+    EXPECT_NE(walls->edit.find("- add_closure: {from: "), std::string::npos);
+    double nearest = 1e9;
+    for (const TrajectoryPose& pose : wrong.trajectory) {
+      if (pose.stamp < walls->t_a || pose.stamp > walls->t_b) continue;
+      nearest = std::min(
+          nearest, std::hypot(pose.T_world_robot.x - walls->x, pose.T_world_robot.y - walls->y));
+    }
+    EXPECT_LT(nearest, 0.5) << "m from the way driven in its span";
+  }
+}
+
+TEST(Doubt, AClosureByHandThatContradictsTheRestIsListed) {
+  BuildingMap map = RightMap();
+  Closure wrong;
+  wrong.older = 3;
+  wrong.newer = static_cast<NodeId>(map.graph.nodes().size() - 1);
+  wrong.T_older_newer.mean = Between(map.graph.node(wrong.older).T_world_robot,
+                                     map.graph.node(wrong.newer).T_world_robot) *
+                             Pose2{1.5, 0.0, 0.0};
+  wrong.T_older_newer.covariance.diagonal() << 1e-4, 1e-4, 1e-5;
+  wrong.state = ClosureState::kValidated;
+  wrong.reason = ClosureReason::kAddedByHand;
+  map.closures.push_back(wrong);
+  AddClosureEdge(map.closures, static_cast<ClosureId>(map.closures.size() - 1), map.graph);
+  const std::vector<Doubt> doubts = FindDoubts(map);
+  ASSERT_EQ(doubts.size(), 1U);
+  EXPECT_EQ(doubts[0].kind, DoubtKind::kClosure);
+  EXPECT_NEAR(doubts[0].size_m, 1.5, 1e-6);
+  EXPECT_NE(doubts[0].text.find("added by hand"), std::string::npos);
+  EXPECT_NE(doubts[0].edit.find("- forbid_closure: "), std::string::npos);
+}
+
+TEST(Doubt, OfNothingThereIsNone) { EXPECT_TRUE(FindDoubts({}).empty()); }
+
+}  // namespace
+}  // namespace masked_mapper
