@@ -2,14 +2,16 @@
 #include "masked_mapper/editing/edits.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "edit_line.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
@@ -26,87 +28,13 @@ constexpr double kStampTolerance = 0.5;  // s
 constexpr double kGuessSigmaM = 0.7;
 constexpr double kGuessSigmaDeg = 7.0;
 
+/// Ten digits of it, the same under every locale.
 std::string Short(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
+  std::array<char, 64> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 10);
+  return std::string(text.data(), end.ptr);
 }
-
-/// One line of the file: its name, and its fields, each of which must be asked for.
-class EditLine {
- public:
-  EditLine(const std::string& name, const YamlTree& tree) : name_(name), line_(tree.line) {
-    if (tree.kind != YamlTree::Kind::kSection || tree.entries.size() != 1) {
-      Fail("expected one edit, such as `- forbid_closure: {from: 90.0, to: 14.0}`");
-    }
-    const YamlTree::Entry& entry = tree.entries.front();
-    line_ = entry.line;
-    what_ = entry.key;
-    if (entry.tree.kind != YamlTree::Kind::kSection) Fail(what_ + " needs its fields");
-    for (const YamlTree::Entry& field : entry.tree.entries) {
-      if (!fields_.emplace(field.key, &field.tree).second) Fail(field.key + " is given twice");
-    }
-  }
-
-  const std::string& what() const { return what_; }
-  [[noreturn]] void Fail(const std::string& message) const {
-    throw InputError(name_ + ":" + std::to_string(line_) + ": " + message);
-  }
-
-  bool Has(const std::string& field) const { return fields_.count(field) != 0; }
-
-  std::string Word(const std::string& field) {
-    const YamlTree& tree = Take(field);
-    if (tree.kind != YamlTree::Kind::kValue || tree.value.empty()) {
-      Fail(what_ + ": " + field + " must be a word");
-    }
-    return tree.value;
-  }
-
-  double Number(const std::string& field) { return NumberOf(Take(field), field); }
-
-  std::vector<double> Numbers(const std::string& field, std::size_t count) {
-    const YamlTree& tree = Take(field);
-    if (tree.kind != YamlTree::Kind::kList || tree.list.size() != count) {
-      Fail(what_ + ": " + field + " must be a list of " + std::to_string(count) + " numbers");
-    }
-    std::vector<double> numbers;
-    for (const YamlTree& item : tree.list) numbers.push_back(NumberOf(item, field));
-    return numbers;
-  }
-
-  void RequireAllTaken() const {
-    for (const auto& [field, tree] : fields_) {
-      if (std::find(taken_.begin(), taken_.end(), field) == taken_.end()) {
-        Fail(what_ + " has no field `" + field + "`");
-      }
-    }
-  }
-
- private:
-  const YamlTree& Take(const std::string& field) {
-    const auto found = fields_.find(field);
-    if (found == fields_.end()) Fail(what_ + " needs `" + field + "`");
-    taken_.push_back(field);
-    return *found->second;
-  }
-
-  double NumberOf(const YamlTree& tree, const std::string& field) const {
-    char* end = nullptr;
-    const double number =
-        tree.kind == YamlTree::Kind::kValue ? std::strtod(tree.value.c_str(), &end) : 0.0;
-    if (end == nullptr || end == tree.value.c_str() || *end != '\0' || !std::isfinite(number)) {
-      Fail(what_ + ": " + field + " must be a number");
-    }
-    return number;
-  }
-
-  std::string name_;
-  std::size_t line_;
-  std::string what_;
-  std::map<std::string, const YamlTree*> fields_;
-  std::vector<std::string> taken_;
-};
 
 class Editor {
  public:

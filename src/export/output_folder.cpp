@@ -127,6 +127,18 @@ void MoveInto(const fs::directory_entry& entry, const fs::path& place) {
   }
 }
 
+// Takes away what a map of other floors or drives left in the folders that are written anew.
+void RemoveStale(const fs::path& written, const fs::path& current) {
+  for (const InnerFolder& folder : kInnerFolders) {
+    if (!fs::exists(written / folder.name) || !fs::is_directory(current / folder.name)) continue;
+    std::vector<fs::path> stale;
+    for (const fs::directory_entry& entry : fs::directory_iterator(current / folder.name)) {
+      if (IsFileOf(folder, entry.path().filename())) stale.push_back(entry.path());
+    }
+    for (const fs::path& file : stale) fs::remove(file);
+  }
+}
+
 std::vector<fs::path> MakeParents(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -213,6 +225,7 @@ void OutputFolder::Replace() {
 }
 
 void OutputFolder::Complete() {
+  RemoveStale(aside_, target_);
   for (const fs::directory_entry& entry : fs::directory_iterator(aside_)) {
     MoveInto(entry, target_ / entry.path().filename());
   }

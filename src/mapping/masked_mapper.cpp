@@ -10,10 +10,19 @@
 #include "masked_mapper/map/trajectory.hpp"
 
 namespace masked_mapper {
+namespace {
+
+// Wheels alone lay out no surroundings against which a match could be refined.
+MappingOptions Settled(MappingOptions options) {
+  options.closures.refine = options.motion.source != MotionSource::kOdometry;
+  return options;
+}
+
+}  // namespace
 
 MaskedMapper::MaskedMapper(const std::string& mask, const MappingOptions& options,
                            const FloorTimeline& floors)
-    : options_(options),
+    : options_(Settled(options)),
       floors_(floors),
       motion_(options.motion),
       mask_(MakeMask(mask, options.masks)),

@@ -84,13 +84,15 @@ bool SayTheSame(const PoseGraph& graph, const Edge& one, const Edge& other) {
          std::abs(WrapAngle(T_by_other.theta - one.T_from_to.mean.theta)) < DegToRad(kSameDeg);
 }
 
-// The way of the motion path to each node, counted on from drive to drive.
+// The way driven to each node, counted on from drive to drive.
 std::vector<double> Travelled(const PoseGraph& graph) {
   std::vector<double> travelled(graph.nodes().size(), 0.0);
-  for (std::size_t i = 1; i < travelled.size(); ++i) {
-    travelled[i] = travelled[i - 1] +
-                   Distance(graph.nodes()[i - 1].T_odom_robot, graph.nodes()[i].T_odom_robot);
+  for (const Edge& edge : graph.edges()) {
+    if (edge.kind == EdgeKind::kClosure) continue;
+    travelled[static_cast<std::size_t>(std::max(edge.from, edge.to))] +=
+        edge.T_from_to.mean.Translation().norm();
   }
+  std::partial_sum(travelled.begin(), travelled.end(), travelled.begin());
   return travelled;
 }
 

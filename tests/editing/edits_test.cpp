@@ -15,9 +15,11 @@ namespace {
 class EditsTest : public testing::Test {
  protected:
   EditsTest() : drive_(1.2, 0.5) {
-    options_.motion.source = MotionSource::kOdometry;
+    MappingOptions options;
+    options.motion.source = MotionSource::kOdometry;
+    options.closures.refine = false;
     floors_.levels.push_back({"up", 3.0, 0.1, true, true});
-    MaskedMapper mapper("never", options_, floors_);
+    MaskedMapper mapper("never", options, floors_);
     for (const LaserScan& scan : drive_.scans) mapper.Observe(scan);
     map_ = mapper.Finish();
   }

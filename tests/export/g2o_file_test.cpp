@@ -64,8 +64,8 @@ TEST(G2oFile, HoldsAllNodesAndEdges) {
     const Pose2& expected = map.graph.nodes()[static_cast<std::size_t>(id)].T_world_robot;
     EXPECT_LT((pose.AsVector() - expected.AsVector()).norm(), 1e-8);
   }
-  EXPECT_EQ(read.edges[3].from, 1);
-  EXPECT_EQ(read.edges[3].to, 0);
+  EXPECT_EQ(read.edges[3].from, 0);
+  EXPECT_EQ(read.edges[3].to, 1);
 }
 
 // The same error counts as much in g2o's terms as in ours.

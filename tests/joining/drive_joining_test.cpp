@@ -105,7 +105,7 @@ TEST(DriveJoining, AnotherBuildingStaysApartBesideTheFirst) {
   EXPECT_EQ(facts[1].piece, 1U);
   EXPECT_EQ(facts[1].closures_to_others, 0U);
   EXPECT_FALSE(facts[1].reason.empty());
-  EXPECT_NE(map.warnings.back().find("stays a piece of its own"), std::string::npos);
+  EXPECT_NE(WarningsOf(map).back().find("stays a piece of its own"), std::string::npos);
   ASSERT_EQ(map.graph.floors().size(), 2U);
   EXPECT_EQ(map.graph.floors()[0].label, "0");
   EXPECT_EQ(map.graph.floors()[1].label, "0.drive2");
@@ -206,7 +206,8 @@ TEST(DriveJoining, APieceWithANamedFloorJoinsWhatGrewLater) {
   EXPECT_EQ(apart.graph.floors()[1].label, "EG.drive2");
   const BuildingMap map = Joined({apart, MapOf(First(), "join_named.log", {{0, "EG"}})});
   EXPECT_EQ(PiecesOfDrives(map)[1], PiecesOfDrives(map)[2]);
-  EXPECT_EQ(std::count_if(map.warnings.begin(), map.warnings.end(),
+  const std::vector<std::string> warnings = WarningsOf(map);
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
                           [](const std::string& warning) {
                             return warning.find("piece of its own") != std::string::npos;
                           }),

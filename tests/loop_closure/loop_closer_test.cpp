@@ -142,8 +142,8 @@ TEST(LoopCloser, MatchesAgainstTheReferenceThatItIsGiven) {
   candidate.T_new_node.covariance.diagonal() << 0.01, 0.01, 0.001;
   closer.Close(scan_nodes.back(), {candidate});
   EXPECT_EQ(asked, std::vector<NodeId>{scan_nodes.front()});
-  ASSERT_EQ(map.closures.size(), attempts + 1);
-  EXPECT_EQ(map.closures.back().a, scan_nodes.back());
+  ASSERT_EQ(map.closures.size(), closures + 1);
+  EXPECT_EQ(map.closures.back().newer, scan_nodes.back());
 }
 
 }  // namespace

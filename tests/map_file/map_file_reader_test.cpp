@@ -188,7 +188,7 @@ TEST(MapFileReader, UpgradesVersion1) {
   // What it is upgraded to is written as what it is.
   const TestFolder folder;
   WriteMapFile(map.origin, map.result, folder / "new.mmap");
-  EXPECT_EQ(Database(folder / "new.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 2);
+  EXPECT_EQ(Database(folder / "new.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 3);
   EXPECT_TRUE(SameMap(map.result, ReadMapFile(folder / "new.mmap").result));
   // The version is part of what is believed: neither passes for the other.
   for (const auto& [from, version] :
@@ -239,9 +239,6 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
            "UPDATE nodes SET floor = 2 WHERE id = 1",
            "UPDATE nodes SET floor = -1 WHERE id = 1",
            "UPDATE nodes SET world_x = -9e999 WHERE id = 1",
-           "UPDATE nodes SET point_count = 1000000000000 WHERE id = 1",
-           "UPDATE nodes SET point_count = -1 WHERE id = 1",
-           "UPDATE nodes SET point_count = point_count + 1 WHERE id = 1",
            "UPDATE nodes SET scan = 99 WHERE id = 1",
            "UPDATE edges SET closure = 3 WHERE kind = 'closure'",
            "DELETE FROM nodes WHERE id = 3",
@@ -292,7 +289,7 @@ void WriteChanged(const fs::path& path, const std::string& change) {
 TEST(MapFileReader, RefusesCovariancesThatAreNone) {
   const TestFolder folder;
   int number = 0;
-  for (const char* table : {"edges", "attempts"}) {
+  for (const char* table : {"edges", "closures"}) {
     for (const char* covariance : {
              "x'000000000000F0BF' || substr(covariance, 9)",  // minus one m^2
              "x'9C7500883CE4377E' || substr(covariance, 9)",  // 1e300
@@ -338,8 +335,9 @@ TEST(MapFileReader, OptionsThatAreNotUnderstoodAreSaidAndLeftAside) {
       folder / "a.mmap", {Insert("matcher.min_score", "0.3"), Insert("matcher.of_old", "12"),
                           Insert("motion.legs", "4"), Insert("nodes.min_edge_length_m", "-5")});
   EXPECT_TRUE(SameMap(map.result, SampleMap()));
-  EXPECT_EQ(map.origin.options.matcher.min_score, 0.3);
-  EXPECT_EQ(map.origin.options.nodes.min_edge_length_m, Options().nodes.min_edge_length_m);
+  EXPECT_EQ(map.origin.options.mapping.closures.matcher.min_score, 0.3);
+  EXPECT_EQ(map.origin.options.mapping.nodes.min_edge_length_m,
+            Options().mapping.nodes.min_edge_length_m);
   ASSERT_EQ(map.left_aside.size(), 2U);
   EXPECT_NE(map.left_aside[0].find("matcher.of_old, motion.legs"), std::string::npos)
       << map.left_aside[0];

@@ -22,7 +22,7 @@ TEST(SavedMap, DifferencesAreSaidInWords) {
   const MapOrigin before{"a.log", "openings", {}};
   MapOrigin now = before;
   EXPECT_EQ(DifferenceFrom(before, now), "");
-  now.options.matcher.min_score = 0.5;
+  now.options.mapping.closures.matcher.min_score = 0.5;
   EXPECT_EQ(DifferenceFrom(before, now), "matcher.min_score was 0.425, now it is 0.5");
   now = before;
   now.onto = "old";

@@ -27,11 +27,13 @@ std::string MessageOf(const std::string& text) {
 
 TEST(Configuration, NestedAndDottedKeysAreTheSame) {
   Options nested;
-  ReadConfigurationText("n", "matcher:\n  min_score: 0.5\n  table:\n    levels: 5\n", nested);
+  ReadConfigurationText(
+      "n", "motion:\n  source: odometry\n  odometry:\n    sigma_position_per_step: 0.5\n", nested);
   Options dotted;
-  ReadConfigurationText("d", "matcher.min_score: 0.5\nmatcher.table: {levels: 5}\n", dotted);
-  EXPECT_EQ(nested.mapping.closures.matcher.min_score, 0.5);
-  EXPECT_EQ(nested.mapping.closures.matcher.table.levels, 5);
+  ReadConfigurationText(
+      "d", "motion.source: odometry\nmotion.odometry: {sigma_position_per_step: 0.5}\n", dotted);
+  EXPECT_EQ(nested.mapping.motion.source, MotionSource::kOdometry);
+  EXPECT_EQ(nested.mapping.motion.odometry.sigma_position_per_step, 0.5);
   EXPECT_EQ(OptionValues(nested), OptionValues(dotted));
 }
 
@@ -44,15 +46,15 @@ TEST(Configuration, EmptyFilesAndSectionsChangeNothing) {
 TEST(Configuration, MistakesNameFileLineAndKey) {
   EXPECT_EQ(MessageOf("nodes:\nmatcher:\n  min_scor: 0.5\n"),
             "my.yaml:3: unknown option `matcher.min_scor` (did you mean `matcher.min_score`?)");
-  EXPECT_EQ(MessageOf("grid:\n  min_hits: 2\nmatcher:\n  min_score: 2\n"),
+  EXPECT_EQ(MessageOf("candidates:\n  max_matches: 2\nmatcher:\n  min_score: 2\n"),
             "my.yaml:4: matcher.min_score must be 0 to 1, not `2`");
   EXPECT_EQ(MessageOf("matcher:\n  min_score: high\n"),
             "my.yaml:2: matcher.min_score must be a number, not `high`");
   EXPECT_EQ(MessageOf("matcher:\n  min_score: [0.5]\n"),
             "my.yaml:2: matcher.min_score must be one value, or a section of options");
   EXPECT_EQ(MessageOf("matcher: 3\n"), "my.yaml:1: unknown option `matcher`");
-  EXPECT_EQ(MessageOf("grid:\n  min_hits: 2\n  min_hits: 3\n"),
-            "my.yaml:3: grid.min_hits is given twice");
+  EXPECT_EQ(MessageOf("candidates:\n  max_matches: 2\n  max_matches: 3\n"),
+            "my.yaml:3: candidates.max_matches is given twice");
   EXPECT_EQ(MessageOf("just words"), "my.yaml:1: expected sections of `key: value` lines");
   EXPECT_EQ(MessageOf("threads: 1\n---\nthreads: 2\n"),
             "my.yaml: holds more than one YAML document");
