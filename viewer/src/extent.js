@@ -43,5 +43,9 @@ export function centre(model) {
     moved(table.before);
     moved(table.after);
   }
+  for (const doubt of model.doubts) {
+    doubt.x -= origin.x;
+    doubt.y -= origin.y;
+  }
   return {origin, extent: Math.max(size.x, size.y, 5), course: longAxis(nodes)};
 }
