@@ -133,6 +133,7 @@ bool BagObservations::TakeTransforms(std::size_t stream, const BagMessage& messa
 LaserScan BagObservations::Convert(RosLaserScan ros_scan, double stamp, const PlanarMount& mount) {
   LaserScan scan;
   scan.stamp = stamp;
+  scan.log_stamp = ros_scan.header.stamp > 0.0 ? ros_scan.header.stamp : stamp;
   scan.T_robot_laser = mount.T_robot_laser;
   const double sense = mount.upside_down != options_.upside_down ? -1.0 : 1.0;
   scan.first_angle = sense * ros_scan.angle_min;

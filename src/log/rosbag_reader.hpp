@@ -12,12 +12,12 @@
 #include <memory>
 #include <string>
 
-#include "masked_mapper/log/log_reader.hpp"
+#include "log_plan.hpp"
 
 namespace masked_mapper {
 
-/// Throws InputError: not a bag of version 2.0 or of ROS 2 (.db3), no scan in it, several topics to
-/// choose from, a topic that is not there.
-std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options);
+/// Looks at the beginning of the bag. Throws InputError: not a bag that is read, no scan in it,
+/// several topics to choose from, a topic that is not there.
+std::unique_ptr<LogPlan> PlanRosBag(const std::string& path, const LogOptions& options);
 
 }  // namespace masked_mapper
