@@ -3,19 +3,19 @@
 
 #include <utility>
 
+#include "carmen_reader.hpp"
 #include "log_plan.hpp"
-#include "masked_mapper/log/bag_file.hpp"
-#include "masked_mapper/log/carmen_reader.hpp"
 #include "masked_mapper/log/ros2_bag_file.hpp"
-#include "masked_mapper/log/rosbag_reader.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "open_bag.hpp"
+#include "rosbag_reader.hpp"
 #include "spool.hpp"
 
 namespace masked_mapper {
 namespace {
 
 std::unique_ptr<LogPlan> PlanOf(const std::string& path, const LogOptions& options) {
-  if (BagFile::IsBag(path) || Ros2BagFile::IsBag(path)) return PlanRosBag(path, options);
+  if (IsBag(path)) return PlanRosBag({path}, options);
   return PlanCarmenLog(path, options);
 }
 
@@ -56,6 +56,9 @@ LogSource::LogSource(const std::string& path, const LogOptions& options) : path_
     throw InputError(text);
   }
 }
+
+LogSource::LogSource(const std::vector<std::string>& paths, const LogOptions& options)
+    : path_(paths.front()), plan_(PlanRosBag(paths, options)) {}
 
 LogSource::~LogSource() = default;
 

@@ -21,11 +21,13 @@ class LogSource {
   /// `-` is standard input. Throws InputError when it cannot be read as a log at all: no such file,
   /// empty, binary, a bag without a scan.
   LogSource(const std::string& path, const LogOptions& options);
+  /// Bags of one recording, in its order (recordings.hpp).
+  LogSource(const std::vector<std::string>& paths, const LogOptions& options);
   ~LogSource();
   LogSource(const LogSource&) = delete;
   LogSource& operator=(const LogSource&) = delete;
 
-  /// As it was given.
+  /// As it was given; of several, the first.
   const std::string& path() const { return path_; }
   /// Whether it can be read but once, and is gone when the program ends.
   bool is_stream() const { return spool_ != nullptr; }
