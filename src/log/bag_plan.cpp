@@ -72,7 +72,7 @@ class TopicChoice {
     BagPlan plan;
     for (const std::string& name : Pick({TopicKind::kScan, TopicKind::kMultiEcho}, "scan",
                                         "log.scan_topic", options.scan_topic)) {
-      plan.topics.push_back({name, kinds_.at(name), plan.scanners++});
+      plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
     if (plan.scanners == 0) {
       throw InputError(path_ + ": holds no sensor_msgs/LaserScan (topics: " +
@@ -83,7 +83,7 @@ class TopicChoice {
     AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
     AddOne({TopicKind::kPressure}, "pressure", "log.pressure_topic", options.pressure_topic, &plan);
     for (const auto& [name, kind] : kinds_) {
-      if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0});
+      if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0, {}});
     }
     plan.mounts.resize(plan.scanners);
     plan.clocks.resize(plan.topics.size());
@@ -125,7 +125,7 @@ class TopicChoice {
               const std::string& given, BagPlan* plan) const {
     const std::vector<std::string> picked = Pick(wanted, what, option, given);
     if (picked.size() > 1) throw InputError(path_ + ": " + option + ": takes one topic");
-    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0});
+    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0, {}});
   }
 
   std::string path_;
