@@ -56,6 +56,7 @@ std::vector<std::string> Warnings(const LogSummary& summary) {
   if (!summary.has_odometry && statistics.scans > 0) {
     warnings.emplace_back("no odometry: motion comes from scans alone");
   }
+  for (const SensorFinding& finding : summary.findings) warnings.push_back(TextOf(finding));
   constexpr double kGap = 2.0;  // s without a scan: the robot may be anywhere
   if (summary.largest_gap_s > kGap) {
     warnings.push_back("no scan for " + FixedText(summary.largest_gap_s, 1) + " s after stamp " +
@@ -109,6 +110,15 @@ void PrintJson(const std::string& log, const LogSummary& summary) {
   for (std::size_t i = 0; i < LogSummary::kQuantiles.size(); ++i) {
     quantiles[FixedText(LogSummary::kQuantiles[i], 2)] = summary.range_quantiles_m[i];
   }
+  Json findings = Json::array();
+  for (const SensorFinding& finding : summary.findings) {
+    findings.push_back({{"what", finding.what},
+                        {"value", finding.value},
+                        {"sigma", finding.sigma},
+                        {"t_a", finding.t_a},
+                        {"t_b", finding.t_b},
+                        {"consequence", finding.consequence}});
+  }
   const Json json = {{"log", log},
                      {"duration_s", summary.duration_s},
                      {"first_stamp", statistics.first_stamp},
@@ -146,7 +156,8 @@ void PrintJson(const std::string& log, const LogSummary& summary) {
                      {"largest_gap_stamp", summary.largest_gap_stamp},
                      {"truncated", statistics.truncated},
                      {"first_bad_line", statistics.first_bad_line},
-                     {"warnings", Warnings(summary)}};
+                     {"warnings", Warnings(summary)},
+                     {"sensors", {{"findings", findings}}}};
   // A path or a bad line may hold bytes that are no UTF-8.
   std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
@@ -157,7 +168,8 @@ int RunInfo(const InfoArguments& arguments) {
     PrintMapInfo(arguments.log, arguments.json);
     return 0;
   }
-  const LogSummary summary = Summarise(arguments.log, options.mapping.log);
+  LogSource source(arguments.log, options.mapping.log);
+  const LogSummary summary = Summarise(source);
   (arguments.json ? PrintJson : PrintText)(arguments.log, summary);
   return 0;
 }

@@ -27,8 +27,10 @@ std::string MaskHelp() {
 
 void AddInputs(CLI::App* command, MapArguments* arguments) {
   command
-      ->add_option("LOG", arguments->logs,
-                   "the robot's log; several drives of one building are joined")
+      ->add_option(
+          "LOG", arguments->logs,
+          "the robot's log, `-`: standard input; several drives of one building are joined,\n"
+          "bags of one recording that go on from each other are one drive")
       ->required();
   command->add_option("-o,--output", arguments->out, "folder to write the map to")
       ->required()

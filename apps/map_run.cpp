@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map_run.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -16,7 +17,8 @@
 #include "masked_mapper/export/closing_table.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/joining/drive_joining.hpp"
-#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/log_source.hpp"
+#include "masked_mapper/log/recordings.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"
 #include "masked_mapper/map_file/finished_drives.hpp"
@@ -81,9 +83,12 @@ void WarnOfLeftAside(const std::string& name, const SavedMap& map, ProgressBar& 
   for (const std::string& line : map.left_aside) progress.Warn(name + ": " + line);
 }
 
+/// The logs, each opened once.
+using LogSources = std::vector<std::unique_ptr<LogSource>>;
+
 /// Maps one of the logs, unless it is done already.
 BuildingMap MapDrive(const MapArguments& arguments, const MapOrigin& origin, std::size_t drive,
-                     Keeping& keeping, ProgressBar& progress) {
+                     LogSource& source, Keeping& keeping, ProgressBar& progress) {
   const bool is_alone = keeping.drives == 1 && origin.onto.empty();
   if (!is_alone) {
     std::optional<BuildingMap> done = keeping.finished.Load(drive);
@@ -92,11 +97,13 @@ BuildingMap MapDrive(const MapArguments& arguments, const MapOrigin& origin, std
   const MapOrigin own = OriginOfDrive(origin, drive);
   keeping.checkpoints = std::make_unique<CheckpointFile>(
       arguments.out, origin, arguments.checkpoint_s, arguments.resume, drive);
-  BuildingMap map =
-      MapLog(own.log, own.mask, own.options.mapping, progress, keeping.checkpoints.get());
+  // What came through a pipe is gone when the program ends: there is nothing to go on with.
+  CheckpointStore* const store = source.is_stream() ? nullptr : keeping.checkpoints.get();
+  BuildingMap map = MapLog(source, own.mask, own.options.mapping, progress, store);
   const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
                                 keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
-  if (is_alone || !is_worth_keeping || arguments.checkpoint_s == 0.0) return map;
+  if (is_alone || !is_worth_keeping || store == nullptr) return map;
+  if (arguments.checkpoint_s == 0.0) return map;
   keeping.checkpoints.reset();
   try {
     keeping.finished.Save(drive, map);
@@ -108,8 +115,8 @@ BuildingMap MapDrive(const MapArguments& arguments, const MapOrigin& origin, std
 }
 
 /// Maps every log by itself and joins them, to OLD first of all.
-BuildingMap MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keeping& keeping,
-                    ProgressBar& progress) {
+BuildingMap MapLogs(const MapArguments& arguments, const MapOrigin& origin,
+                    const LogSources& sources, Keeping& keeping, ProgressBar& progress) {
   std::vector<BuildingMap> maps;
   double onto_seconds = 0.0;
   if (!origin.onto.empty()) {
@@ -123,7 +130,7 @@ BuildingMap MapLogs(const MapArguments& arguments, const MapOrigin& origin, Keep
     }
   }
   for (std::size_t drive = 0; drive < keeping.drives; ++drive) {
-    maps.push_back(MapDrive(arguments, origin, drive, keeping, progress));
+    maps.push_back(MapDrive(arguments, origin, drive, *sources[drive], keeping, progress));
   }
   BuildingMap map = JoinDrives(std::move(maps), origin.options.drive_joins,
                                origin.options.mapping.closures, progress);
@@ -160,23 +167,41 @@ ExportAdvice HowToExport(const MapArguments& arguments) {
   return ExportAdvice::kResume;
 }
 
-MapOrigin OriginOf(const MapArguments& arguments, Options options) {
+/// Files of each log: one, or the parts of a recording that was split.
+using Recordings = std::vector<std::vector<std::string>>;
+
+std::string NameOf(const std::vector<std::string>& files) {
+  std::string name;
+  for (const std::string& file : files) name += (name.empty() ? "" : " + ") + file;
+  return name;
+}
+
+/// The file of floors of a log; of one in parts, the first that is given for any of them.
+std::string FloorsOf(const std::vector<std::string>& files, const MapArguments& arguments,
+                     const std::string& of_all) {
+  if (arguments.floors.empty()) return of_all;
+  for (std::size_t i = 0; i < arguments.logs.size(); ++i) {
+    const bool is_part = std::find(files.begin(), files.end(), arguments.logs[i]) != files.end();
+    if (is_part && arguments.floors[i] != "-") return arguments.floors[i];
+  }
+  return "";
+}
+
+MapOrigin OriginOf(const MapArguments& arguments, const Recordings& recordings, Options options) {
   const std::size_t given = arguments.floors.size();
-  const bool is_given_to_all = given == arguments.logs.size();
-  if (given > 0 && !is_given_to_all) {
+  if (given > 0 && given != arguments.logs.size()) {
     throw InputError("--floors is given " + std::to_string(given) + " times for " +
                      std::to_string(arguments.logs.size()) +
                      " logs: once for each, in their order, `-` for none");
   }
   const auto floors_of = [&](std::size_t log) {
-    if (given == 0) return options.mapping.floors.file;
-    return arguments.floors[log] == "-" ? std::string() : arguments.floors[log];
+    return FloorsOf(recordings[log], arguments, options.mapping.floors.file);
   };
   MapOrigin origin;
-  origin.log = arguments.logs.front();
+  origin.log = NameOf(recordings.front());
   origin.mask = arguments.mask;
-  for (std::size_t i = 1; i < arguments.logs.size(); ++i) {
-    origin.later_logs.push_back({arguments.logs[i], floors_of(i)});
+  for (std::size_t i = 1; i < recordings.size(); ++i) {
+    origin.later_logs.push_back({NameOf(recordings[i]), floors_of(i)});
   }
   origin.onto = arguments.onto;
   options.mapping.floors.file = floors_of(0);
@@ -186,12 +211,13 @@ MapOrigin OriginOf(const MapArguments& arguments, Options options) {
 }
 
 /// Maps and puts the map into OUT, where nothing loses it any more.
-BuildingMap MakeMap(const MapArguments& arguments, const MapOrigin& origin, ExistingFolder existing,
-                    Keeping& keeping, ProgressBar& progress) {
+BuildingMap MakeMap(const MapArguments& arguments, const MapOrigin& origin,
+                    const LogSources& sources, ExistingFolder existing, Keeping& keeping,
+                    ProgressBar& progress) {
   BuildingMap result;
   std::string edit_fault;
   try {
-    result = MapLogs(arguments, origin, keeping, progress);
+    result = MapLogs(arguments, origin, sources, keeping, progress);
     edit_fault = EditFault(arguments, origin.options, result);
     progress.Stage("writing");
     KeepMap(origin, result, arguments.out, existing);
@@ -246,11 +272,17 @@ Options AskedOptions(const MapArguments& arguments) {
   return options;
 }
 
+LogSources OpenAll(const Recordings& recordings, const LogOptions& options) {
+  LogSources sources;
+  for (const std::vector<std::string>& files : recordings) {
+    sources.push_back(files.size() == 1 ? std::make_unique<LogSource>(files.front(), options)
+                                        : std::make_unique<LogSource>(files, options));
+  }
+  return sources;
+}
+
 /// What must not be found out after an hour of mapping.
 void CheckInputs(const MapArguments& arguments, const MapOrigin& origin) {
-  for (const MapOrigin::LaterLog& later : origin.later_logs) {
-    OpenLog(later.log, origin.options.mapping.log);
-  }
   if (!origin.onto.empty()) MapFileOf(origin.onto);
   if (!arguments.edits.empty() && !std::filesystem::exists(arguments.edits)) {
     throw InputError(arguments.edits + ": no such list of edits");
@@ -264,10 +296,11 @@ int RunMap(const MapArguments& arguments) {
   MakeMask(arguments.mask, options.mapping.masks);  // throws before the log is looked at
   // Before the work: an hour of mapping must not end in "exists already".
   const ExistingFolder existing = HowToTreat(arguments);
-  const MapOrigin origin = OriginOf(arguments, std::move(options));
+  const Recordings recordings = RecordingsOf(arguments.logs);
+  const MapOrigin origin = OriginOf(arguments, recordings, std::move(options));
   CheckInputs(arguments, origin);
   Keeping keeping{FinishedDrives(arguments.out, origin, arguments.resume), nullptr,
-                  arguments.logs.size()};
+                  recordings.size()};
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
   if (std::optional<SavedMap> finished = FinishedMap(arguments, origin)) {
@@ -279,10 +312,11 @@ int RunMap(const MapArguments& arguments) {
     throw InputError("an unfinished map of " + arguments.out +
                      " is there: --resume goes on with it, --force starts afresh");
   }
+  const LogSources sources = OpenAll(recordings, origin.options.mapping.log);
   // What an earlier run left of finished drives must not be taken for this one's.
   const bool keeps_drives = keeping.drives > 1 || !origin.onto.empty();
   if (!arguments.resume && keeps_drives) keeping.finished.Remove();
-  SavedMap map{origin, MakeMap(arguments, origin, existing, keeping, progress)};
+  SavedMap map{origin, MakeMap(arguments, origin, sources, existing, keeping, progress)};
   const Summary summary =
       ExportMap(map, arguments.out, MapFileNow::kAsItIs, HowToExport(arguments));
   progress.Finish();

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/entries.hpp"
 #include "fuzz/input_file.hpp"
-#include "masked_mapper/log/carmen_reader.hpp"
+#include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
-#include "masked_mapper/log/rosbag_reader.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {
 namespace {
 
-template <typename Open>
-void ReadToTheEnd(const Open& open, const std::string& path) {
+void ReadToTheEnd(const std::string& path) {
   try {
-    const std::unique_ptr<LogReader> reader = open(path, LogOptions{});
+    const std::unique_ptr<LogReader> reader = OpenLog(path, LogOptions{});
     while (reader->Next()) {
     }
     // Kept from being optimised away, and read once by the sanitizers.
@@ -25,17 +23,17 @@ void ReadToTheEnd(const Open& open, const std::string& path) {
 
 void CarmenLog(const std::uint8_t* data, std::size_t size) {
   const InputFile file(".log", data, size);
-  ReadToTheEnd(&OpenCarmenLog, file.path());
+  ReadToTheEnd(file.path());
 }
 
 void RosBag1(const std::uint8_t* data, std::size_t size) {
   const InputFile file(".bag", data, size);
-  ReadToTheEnd(&OpenRosBag, file.path());
+  ReadToTheEnd(file.path());
 }
 
 void RosBag2(const std::uint8_t* data, std::size_t size) {
   const InputFile file(".db3", data, size);
-  ReadToTheEnd(&OpenRosBag, file.path());
+  ReadToTheEnd(file.path());
 }
 
 void RosMessages(const std::uint8_t* data, std::size_t size) {

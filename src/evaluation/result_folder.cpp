@@ -129,8 +129,71 @@ std::vector<ValidatedClosure> ReadClosures(const std::string& path,
   return closures;
 }
 
-// Floors and drives of summary.json.
-void ReadSummary(const std::string& path, ResultFolder& result) {
+/// Stamps that the log does not give: place of the scan and stamp.
+using MendedStamps = std::vector<std::pair<std::size_t, double>>;
+
+MendedStamps TakeMendedStamps(const nlohmann::json& list) {
+  MendedStamps mended;
+  for (const auto& entry : list) {
+    if (!entry.is_array() || entry.size() != 2 || !entry[0].is_number_unsigned() ||
+        !entry[1].is_number()) {
+      return {};
+    }
+    mended.emplace_back(entry[0].get<std::size_t>(), entry[1].get<double>());
+  }
+  return mended;
+}
+
+std::vector<MappedScan> ScansOf(const std::vector<StampedPose>& poses,
+                                const std::vector<MappedDrive>& drives,
+                                const MendedStamps& mended) {
+  std::vector<MappedScan> scans;
+  scans.reserve(poses.size());
+  std::size_t drive = 0;
+  std::size_t in_drive = 0;
+  for (const StampedPose& pose : poses) {
+    while (drive + 1 < drives.size() && in_drive >= drives[drive].scans) {
+      ++drive;
+      in_drive = 0;
+    }
+    ++in_drive;
+    scans.push_back({pose, pose.stamp + (drives.empty() ? 0.0 : drives[drive].stamp_offset)});
+  }
+  for (const auto& [scan, stamp] : mended) {
+    if (scan < scans.size()) scans[scan].stamp = stamp;
+  }
+  return scans;
+}
+
+std::vector<StampedPose> InOrderOfStamps(const std::vector<MappedScan>& scans) {
+  std::vector<StampedPose> poses;
+  poses.reserve(scans.size());
+  for (const MappedScan& scan : scans) poses.push_back(scan.pose);
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
+  return poses;
+}
+
+/// The log's stamps of the scans at which nodes were made; a node's own where there is no such
+/// scan.
+std::vector<double> LogStampsOf(const std::vector<StampedPose>& nodes,
+                                const std::vector<MappedScan>& scans) {
+  constexpr double kSameStamp = 1e-5;  // s
+  std::vector<double> stamps;
+  stamps.reserve(nodes.size());
+  auto scan = scans.begin();
+  for (const StampedPose& node : nodes) {
+    scan = std::find_if(scan, scans.end(), [&node](const MappedScan& candidate) {
+      return candidate.stamp >= node.stamp - kSameStamp;
+    });
+    const bool is_there = scan != scans.end() && scan->stamp <= node.stamp + kSameStamp;
+    stamps.push_back(is_there ? scan->pose.stamp : node.stamp);
+  }
+  return stamps;
+}
+
+// Floors, drives and mended stamps of summary.json.
+void ReadSummary(const std::string& path, ResultFolder& result, MendedStamps& mended) {
   std::string text;
   ForEachLine(path, [&text](std::string_view line, const FileLine&) {
     text.append(line);
@@ -149,6 +212,7 @@ void ReadSummary(const std::string& path, ResultFolder& result) {
     result.floors.push_back(
         {entry["label"].get<std::string>(), entry["elevation_m"].get<double>()});
   }
+  if (json.contains("mended_stamps")) mended = TakeMendedStamps(json["mended_stamps"]);
   const auto drives = json.find("drives");
   if (drives == json.end()) return;
   if (!drives->is_array()) fail("`drives` is no list");
@@ -171,6 +235,13 @@ void ReadSummary(const std::string& path, ResultFolder& result) {
     }
     result.drives.push_back(std::move(drive));
   }
+}
+
+template <typename T>
+std::vector<T> PartOf(const std::vector<T>& all, std::size_t first, std::size_t count) {
+  first = std::min(first, all.size());
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(std::min(count, all.size() - first))};
 }
 
 bool Exists(const fs::path& path) {
@@ -198,10 +269,14 @@ ResultFolder ReadResultFolder(const std::string& folder) {
   if (!Exists(root / "trajectory.tum")) {
     throw InputError(folder + ": holds no trajectory.tum, so `map` did not finish it");
   }
-  result.trajectory = ReadTrajectory((root / "trajectory.tum").string());
-  if (Exists(root / "summary.json")) ReadSummary((root / "summary.json").string(), result);
+  MendedStamps mended;
+  if (Exists(root / "summary.json")) ReadSummary((root / "summary.json").string(), result, mended);
+  result.scans =
+      ScansOf(ReadTrajectoryInFileOrder((root / "trajectory.tum").string()), result.drives, mended);
+  result.trajectory = InOrderOfStamps(result.scans);
   if (Exists(root / "nodes.tum") && Exists(root / "graph.g2o")) {
     result.graph = ReadGraph(root);
+    result.graph->log_stamps = LogStampsOf(result.graph->nodes, result.scans);
     if (Exists(root / "closures.csv")) {
       result.closures = ReadClosures((root / "closures.csv").string(), result.graph->nodes);
     }
@@ -219,29 +294,21 @@ ResultFolder OneDrive(const std::string& folder, const ResultFolder& result, std
   // Ends of what comes before, of which sums of an enemy's numbers may be anything.
   std::size_t first_scan = 0;
   std::size_t first_node = 0;
+  const std::size_t all_nodes = result.graph ? result.graph->nodes.size() : 0;
   for (std::size_t i = 0; i + 1 < number; ++i) {
-    first_scan = std::min(result.trajectory.size(),
-                          first_scan + std::min(result.trajectory.size(), result.drives[i].scans));
-    if (result.graph) {
-      first_node =
-          std::min(result.graph->nodes.size(),
-                   first_node + std::min(result.graph->nodes.size(), result.drives[i].nodes));
-    }
+    const MappedDrive& before = result.drives[i];
+    first_scan =
+        std::min(result.scans.size(), first_scan + std::min(result.scans.size(), before.scans));
+    first_node = std::min(all_nodes, first_node + std::min(all_nodes, before.nodes));
   }
   const MappedDrive& drive = result.drives[number - 1];
-  const auto own = [&](const std::vector<StampedPose>& poses, std::size_t first,
-                       std::size_t count) {
-    std::vector<StampedPose> part(
-        poses.begin() + static_cast<std::ptrdiff_t>(first),
-        poses.begin() + static_cast<std::ptrdiff_t>(first + std::min(count, poses.size() - first)));
-    for (StampedPose& pose : part) pose.stamp -= drive.stamp_offset;
-    return part;
-  };
   ResultFolder one;
-  one.trajectory = own(result.trajectory, first_scan, drive.scans);
-  if (one.trajectory.empty()) {
+  one.scans = PartOf(result.scans, first_scan, drive.scans);
+  if (one.scans.empty()) {
     throw InputError(folder + ": trajectory.tum has no scan of drive " + std::to_string(number));
   }
+  for (MappedScan& scan : one.scans) scan.stamp -= drive.stamp_offset;
+  one.trajectory = InOrderOfStamps(one.scans);
   for (const MappedFloor& floor : result.floors) {
     if (std::find(drive.floors.begin(), drive.floors.end(), floor.label) != drive.floors.end()) {
       one.floors.push_back(floor);
@@ -249,7 +316,9 @@ ResultFolder OneDrive(const std::string& folder, const ResultFolder& result, std
   }
   if (!result.graph) return one;
   one.graph.emplace();
-  one.graph->nodes = own(result.graph->nodes, first_node, drive.nodes);
+  one.graph->nodes = PartOf(result.graph->nodes, first_node, drive.nodes);
+  one.graph->log_stamps = PartOf(result.graph->log_stamps, first_node, drive.nodes);
+  for (StampedPose& node : one.graph->nodes) node.stamp -= drive.stamp_offset;
   const std::size_t nodes = one.graph->nodes.size();
   const auto is_own = [&](std::size_t node) {
     return node >= first_node && node - first_node < nodes;

@@ -77,13 +77,13 @@ std::optional<StampedPose> CarriedTruePoseAt(const Truth& truth,
   return StampedPose{stamp, key.T_world_robot * T_key_stamp, key.z};
 }
 
-std::vector<std::optional<StampedPose>> TruePosesOf(const std::vector<StampedPose>& nodes,
+std::vector<std::optional<StampedPose>> TruePosesOf(const std::vector<double>& log_stamps,
                                                     const Truth& truth,
                                                     const std::vector<StampedPose>& trajectory) {
   std::vector<std::optional<StampedPose>> poses;
-  poses.reserve(nodes.size());
-  for (const StampedPose& node : nodes) {
-    poses.push_back(CarriedTruePoseAt(truth, trajectory, node.stamp));
+  poses.reserve(log_stamps.size());
+  for (const double stamp : log_stamps) {
+    poses.push_back(CarriedTruePoseAt(truth, trajectory, stamp));
   }
   return poses;
 }

@@ -196,16 +196,15 @@ class MapWriter {
     return building;
   }
 
-  // Each drive with the stamps of its own log, so that it can be held against a truth of its own.
+  // Each drive by itself, so that it can be held against a truth of its own.
   void WriteDrives() {
     if (result_.drives.size() < 2) return;
     std::filesystem::create_directory(folder_ / "drives");
     for (std::size_t i = 0; i < result_.drives.size(); ++i) {
       const IndexRange poses = PosesOfDrive(result_, i);
-      std::vector<TrajectoryPose> own(
+      const std::vector<TrajectoryPose> own(
           result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.begin),
           result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.end));
-      for (TrajectoryPose& pose : own) pose.stamp -= result_.drives[i].stamp_offset_s;
       Write("drives/" + std::to_string(i + 1) + ".tum",
             [&](const auto& path) { WriteTrajectory(own, floors(), path); });
     }

@@ -128,6 +128,33 @@ Json DoubtsJson(const std::vector<Doubt>& doubts, const std::vector<Summary::Flo
   return json;
 }
 
+Json FindingsJson(const std::vector<SensorFinding>& findings) {
+  Json json = Json::array();
+  for (const SensorFinding& finding : findings) {
+    json.push_back({{"what", finding.what},
+                    {"value", finding.value},
+                    {"sigma", finding.sigma},
+                    {"t_a", finding.t_a},
+                    {"t_b", finding.t_b},
+                    {"consequence", finding.consequence}});
+  }
+  return json;
+}
+
+std::vector<std::pair<std::uint64_t, double>> MendedStamps(const BuildingMap& result) {
+  constexpr double kSameStamp = 1e-6;  // s
+  std::vector<std::pair<std::uint64_t, double>> mended;
+  for (std::size_t drive = 0; drive < result.drives.size(); ++drive) {
+    const IndexRange poses = PosesOfDrive(result, drive);
+    for (std::size_t i = poses.begin; i < poses.end; ++i) {
+      const TrajectoryPose& pose = result.trajectory[i];
+      const double shifted = pose.log_stamp + result.drives[drive].stamp_offset_s;
+      if (std::abs(shifted - pose.stamp) > kSameStamp) mended.emplace_back(i, pose.stamp);
+    }
+  }
+  return mended;
+}
+
 Json SecondsJson(const StageSeconds& seconds) {
   const auto rounded = [](double value) { return Rounded(value, 1e4); };
   return {{"read", rounded(seconds.read)},
@@ -176,6 +203,8 @@ Summary Summarise(const BuildingMap& result, const RunDescription& run,
   summary.peak_memory_mib = PeakMemoryMib();
   summary.warnings = WarningsOf(result);
   summary.doubts = FindDoubts(result);
+  summary.findings = result.findings;
+  summary.mended_stamps = MendedStamps(result);
   if (result.drives.size() > 1) summary.drives = FactsOfDrives(result);
   return summary;
 }
@@ -190,7 +219,9 @@ std::string SummaryText(const Summary& summary) {
                {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
                {"options", SettingsJson(summary.run.settings)},
                {"doubts", DoubtsJson(summary.doubts, summary.floors)},
-               {"warnings", summary.warnings}};
+               {"warnings", summary.warnings},
+               {"sensors", {{"findings", FindingsJson(summary.findings)}}}};
+  if (!summary.mended_stamps.empty()) json["mended_stamps"] = summary.mended_stamps;
   if (!summary.drives.empty()) json["drives"] = DrivesJson(summary.drives);
   // A path may hold bytes that are no UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -27,7 +27,7 @@ void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory,
                      const std::vector<Floor>& floors, const std::filesystem::path& path) {
   std::string text;
   for (const TrajectoryPose& pose : trajectory) {
-    text += TumLine(pose.stamp, pose.T_world_robot, ElevationOf(floors, pose.floor));
+    text += TumLine(pose.log_stamp, pose.T_world_robot, ElevationOf(floors, pose.floor));
   }
   WriteFile(path, text);
 }

@@ -110,6 +110,7 @@ class DriveJoiner {
     }
     AddStatistics(more.log, map_.log);
     map_.seconds += more.seconds;
+    map_.findings.insert(map_.findings.end(), more.findings.begin(), more.findings.end());
     map_.warnings.insert(map_.warnings.end(), more.warnings.begin(), more.warnings.end());
     if (offset != 0.0) {
       said_.push_back(map_.drives.back().log + ": its stamps are shifted by " +

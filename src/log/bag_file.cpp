@@ -36,6 +36,14 @@ enum Op : int {
 
 using Bytes = std::vector<unsigned char>;
 
+/// Seconds and nanoseconds of a field.
+std::optional<double> TimeOf(std::string_view field) {
+  if (field.size() != 8) return std::nullopt;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(field.data());
+  return static_cast<double>(LittleEndian(bytes, 4)) +
+         1e-9 * static_cast<double>(LittleEndian(bytes + 4, 4));
+}
+
 }  // namespace
 
 class BagFile::Impl {
@@ -70,6 +78,9 @@ class BagFile::Impl {
 
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
   bool is_indexed() const { return is_indexed_; }
+  std::optional<double> end_time() const {
+    return is_indexed_ && end_time_ > 0.0 ? std::optional<double>(end_time_) : std::nullopt;
+  }
   bool truncated() const { return truncated_; }
   std::uint64_t damaged() const { return damaged_; }
   double Progress() const {
@@ -111,6 +122,7 @@ class BagFile::Impl {
     for (std::uint64_t i = 0; i < chunks; ++i) {
       if (!file_.ReadHeader(&header, &data_size) || header.op() != kChunkInfo) return;
       chunk_positions_.insert(header.Number("chunk_pos", 8).value_or(0));
+      end_time_ = std::max(end_time_, TimeOf(header.Find("end_time")).value_or(0.0));
       Skip(data_size);
     }
     is_indexed_ = true;
@@ -195,17 +207,14 @@ class BagFile::Impl {
   std::optional<BagMessage> Message(const RecordHeader& header, const unsigned char* data,
                                     std::size_t size) {
     const auto connection = header.Number("conn", 4);
-    const std::string_view time = header.Find("time");
-    if (!connection || time.size() != 8 ||
-        connections_.count(static_cast<std::uint32_t>(*connection)) == 0) {
+    const std::optional<double> time = TimeOf(header.Find("time"));
+    if (!connection || !time || connections_.count(static_cast<std::uint32_t>(*connection)) == 0) {
       ++damaged_;
       return std::nullopt;
     }
-    const auto* bytes = reinterpret_cast<const unsigned char*>(time.data());
     BagMessage message;
     message.connection = static_cast<std::uint32_t>(*connection);
-    message.time = static_cast<double>(LittleEndian(bytes, 4)) +
-                   1e-9 * static_cast<double>(LittleEndian(bytes + 4, 4));
+    message.time = *time;
     message.data = data;
     message.size = size;
     return message;
@@ -274,6 +283,7 @@ class BagFile::Impl {
   std::set<std::uint64_t> chunk_positions_;
   std::map<std::uint32_t, BagConnection> connections_;
   bool is_indexed_ = false;
+  double end_time_ = 0.0;  ///< s
   bool at_end_ = false;
   bool truncated_ = false;
   std::uint64_t damaged_ = 0;
@@ -303,6 +313,7 @@ const std::map<std::uint32_t, BagConnection>& BagFile::Connections() const {
   return impl_->connections();
 }
 bool BagFile::IsIndexed() const { return impl_->is_indexed(); }
+std::optional<double> BagFile::EndTime() const { return impl_->end_time(); }
 bool BagFile::Truncated() const { return impl_->truncated(); }
 std::uint64_t BagFile::Damaged() const { return impl_->damaged(); }
 double BagFile::Progress() const { return impl_->Progress(); }

@@ -8,13 +8,18 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kClocksApart = 5.0;  // s
 constexpr std::size_t kMostOtherTopics = 64;
 
 }  // namespace
 
-BagObservations::BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag)
-    : options_(options), plan_(plan), bag_(bag), streams_(plan, bag), in_order_(plan.scanners) {
+BagObservations::BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag,
+                                 BagEvidence* evidence)
+    : options_(options),
+      plan_(plan),
+      bag_(bag),
+      evidence_(evidence),
+      streams_(plan, bag),
+      in_order_(plan.scanners) {
   statistics_.max_range = plan.max_range;
 }
 
@@ -22,7 +27,8 @@ void BagObservations::Add(const BagMessage& message) {
   ++statistics_.lines;
   const std::optional<std::size_t> stream = streams_.Find(message.connection);
   if (!stream) {
-    CountOther(bag_.Connections().at(message.connection));
+    const BagConnection& connection = bag_.Connections().at(message.connection);
+    CountOther(connection.topic + " (" + connection.type + ")");
   } else if (!Take(*stream, message)) {
     if (statistics_.bad_lines++ == 0) {
       statistics_.first_bad_line = "message " + std::to_string(statistics_.lines) + " on " +
@@ -66,73 +72,73 @@ void BagObservations::MoveOn() {
   if (finished_) in_order_.Finish();
 }
 
-double BagObservations::StampOf(std::size_t stream, const BagMessage& message,
-                                const RosHeader& header) const {
-  const double offset = plan_.clock_offsets[stream].value_or(plan_.clock_offset);
+double BagObservations::StampOf(std::size_t stream, double time, double header) const {
+  const TopicClock& clock = plan_.clocks[stream];
+  const double offset = clock.offset.value_or(plan_.clock_offset);
   const bool same_clock = std::abs(offset - plan_.clock_offset) <= kClocksApart;
-  return header.stamp > 0.0 && same_clock ? header.stamp : message.time + plan_.clock_offset;
+  if (!(header > 0.0) || !same_clock) return time + plan_.clock_offset;
+  const bool is_stray = clock.is_steady && std::abs(header - time - offset) > kStray;
+  return is_stray || clock.whole_seconds ? time + offset : header;
 }
 
 bool BagObservations::Take(std::size_t stream, const BagMessage& message) {
-  const BagTopic& topic = plan_.topics[stream];
-  switch (topic.kind) {
-    case TopicKind::kScan:
-    case TopicKind::kMultiEcho: {
-      auto scan = ParseScan(topic.kind, message, options_);
-      if (!scan) return false;
-      const double stamp = StampOf(stream, message, scan->header);
-      mender_.Add(Convert(std::move(*scan), stamp, plan_.mounts[topic.scanner]), stream);
-      return true;
-    }
-    case TopicKind::kOdometry: {
-      const auto odometry = ParseOdometry(message.data, message.size, message.encoding);
-      if (!odometry) return false;
-      mender_.Add(OdometryReading{StampOf(stream, message, odometry->header),
-                                  SeenFromAbove(odometry->T_frame_child).T_robot_laser},
-                  stream);
-      return true;
-    }
-    case TopicKind::kTransforms:
-      return TakeTransforms(stream, message);
-    case TopicKind::kImu: {
-      const auto imu = ParseImu(message.data, message.size, message.encoding);
-      if (!imu) return false;
-      mender_.Add(AccelerationReading{StampOf(stream, message, imu->header),
-                                      plan_.R_robot_imu * imu->acceleration},
-                  stream);
-      return true;
-    }
-    case TopicKind::kPressure: {
-      const auto pressure = ParseFluidPressure(message.data, message.size, message.encoding);
-      if (!pressure) return false;
-      mender_.Add(
-          PressureReading{StampOf(stream, message, pressure->header), pressure->pressure_pa},
-          stream);
-      return true;
-    }
+  auto parsed = ParseMessage(plan_.topics[stream].kind, message, options_);
+  if (!parsed) return false;
+  if (evidence_ != nullptr) {
+    std::visit([&](const auto& read) { evidence_->Add(stream, message.time, read); }, *parsed);
   }
-  return false;
+  std::visit([&](auto& read) { TakeMessage(stream, message.time, read); }, *parsed);
+  return true;
 }
 
-bool BagObservations::TakeTransforms(std::size_t stream, const BagMessage& message) {
-  const auto transforms = ParseTransforms(message.data, message.size, message.encoding);
-  if (!transforms) return false;
-  if (plan_.odometry_frame.empty()) return true;
-  for (const RosTransform& transform : *transforms) {
+void BagObservations::TakeMessage(std::size_t stream, double time, RosLaserScan& scan) {
+  const BagTopic& topic = plan_.topics[stream];
+  if (!topic.frame.empty() && scan.header.frame_id != topic.frame) {
+    CountOther(topic.name + " (of `" + scan.header.frame_id + "`)");
+    return;
+  }
+  const double stamp = StampOf(stream, time, scan.header.stamp);
+  mender_.Add(Convert(std::move(scan), stamp, topic.scanner), stream);
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time, const RosOdometry& odometry) {
+  mender_.Add(OdometryReading{StampOf(stream, time, odometry.header.stamp),
+                              SeenFromAbove(odometry.T_frame_child).T_robot_laser},
+              stream);
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time, const RosImu& imu) {
+  mender_.Add(AccelerationReading{StampOf(stream, time, imu.header.stamp),
+                                  plan_.R_robot_imu * imu.acceleration},
+              stream);
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time,
+                                  const RosFluidPressure& pressure) {
+  mender_.Add(PressureReading{StampOf(stream, time, pressure.header.stamp), pressure.pressure_pa},
+              stream);
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time,
+                                  const std::vector<RosTransform>& transforms) {
+  if (plan_.odometry_frame.empty()) return;
+  for (const RosTransform& transform : transforms) {
     if (transform.header.frame_id != plan_.odometry_frame ||
         transform.child_frame_id != plan_.robot_frame) {
       continue;
     }
-    mender_.Add(OdometryReading{StampOf(stream, message, transform.header),
+    mender_.Add(OdometryReading{StampOf(stream, time, transform.header.stamp),
                                 SeenFromAbove(transform.T_frame_child).T_robot_laser},
                 stream);
   }
-  return true;
 }
 
-LaserScan BagObservations::Convert(RosLaserScan ros_scan, double stamp, const PlanarMount& mount) {
+LaserScan BagObservations::Convert(RosLaserScan ros_scan, double stamp, std::size_t scanner) {
+  const PlanarMount& mount = plan_.mounts[scanner];
+  const ScannerRanges& judged = plan_.ranges[scanner];
   LaserScan scan;
   scan.stamp = stamp;
+  scan.log_stamp = ros_scan.header.stamp > 0.0 ? ros_scan.header.stamp : stamp;
   scan.T_robot_laser = mount.T_robot_laser;
   const double sense = mount.upside_down != options_.upside_down ? -1.0 : 1.0;
   scan.first_angle = sense * ros_scan.angle_min;
@@ -142,10 +148,13 @@ LaserScan BagObservations::Convert(RosLaserScan ros_scan, double stamp, const Pl
   const float no_return = plan_.no_return > 0.0F ? plan_.no_return : scan.max_range;
   if (!options_.read_ranges) return scan;
   scan.ranges = std::move(ros_scan.ranges);
-  const double least =
-      ros_scan.range_min > options_.min_range && ros_scan.range_min < scan.max_range
-          ? ros_scan.range_min
-          : options_.min_range;
+  if (judged.scale != 1.0) {
+    for (float& range : scan.ranges) range *= static_cast<float>(judged.scale);
+  }
+  const double least = judged.believes_range_min && ros_scan.range_min > options_.min_range &&
+                               ros_scan.range_min < scan.max_range
+                           ? ros_scan.range_min
+                           : options_.min_range;
   const auto min_range = static_cast<float>(least);
   for (float& range : scan.ranges) {
     if (range >= min_range && range < no_return) continue;
@@ -172,9 +181,8 @@ void BagObservations::Count(const Observation& observation) {
   }
 }
 
-void BagObservations::CountOther(const BagConnection& connection) {
+void BagObservations::CountOther(const std::string& name) {
   auto& others = statistics_.other_messages;
-  const std::string name = connection.topic + " (" + connection.type + ")";
   const bool has_room = others.size() < kMostOtherTopics || others.count(name) > 0;
   ++others[has_room ? name : "(others)"];
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 
+#include "bag_evidence.hpp"
 #include "bag_plan.hpp"
 #include "masked_mapper/log/odometry_at_scans.hpp"
 #include "masked_mapper/log/scan_merger.hpp"
@@ -50,8 +51,9 @@ class InOrder {
 
 class BagObservations {
  public:
-  /// All three must outlive it.
-  BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag);
+  /// All must outlive it. With `evidence`, what is read is noted there.
+  BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag,
+                  BagEvidence* evidence = nullptr);
 
   void Add(const BagMessage& message);
   /// No more will come.
@@ -63,17 +65,22 @@ class BagObservations {
  private:
   /// From the mender to the odometry to the order of what is handed out.
   void MoveOn();
-  double StampOf(std::size_t stream, const BagMessage& message, const RosHeader& header) const;
+  double StampOf(std::size_t stream, double time, double header) const;
   /// False when the message is malformed.
   bool Take(std::size_t stream, const BagMessage& message);
-  bool TakeTransforms(std::size_t stream, const BagMessage& message);
-  LaserScan Convert(RosLaserScan ros_scan, double stamp, const PlanarMount& mount);
+  void TakeMessage(std::size_t stream, double time, RosLaserScan& scan);
+  void TakeMessage(std::size_t stream, double time, const RosOdometry& odometry);
+  void TakeMessage(std::size_t stream, double time, const std::vector<RosTransform>& transforms);
+  void TakeMessage(std::size_t stream, double time, const RosImu& imu);
+  void TakeMessage(std::size_t stream, double time, const RosFluidPressure& pressure);
+  LaserScan Convert(RosLaserScan ros_scan, double stamp, std::size_t scanner);
   void Count(const Observation& observation);
-  void CountOther(const BagConnection& connection);
+  void CountOther(const std::string& name);
 
   const LogOptions& options_;
   const BagPlan& plan_;
   const RosBag& bag_;
+  BagEvidence* evidence_;
   BagStreams streams_;
   StampMender mender_;
   OdometryAtScans at_scans_;

@@ -2,7 +2,9 @@
 #include "bag_plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
 #include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
@@ -70,7 +72,7 @@ class TopicChoice {
     BagPlan plan;
     for (const std::string& name : Pick({TopicKind::kScan, TopicKind::kMultiEcho}, "scan",
                                         "log.scan_topic", options.scan_topic)) {
-      plan.topics.push_back({name, kinds_.at(name), plan.scanners++});
+      plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
     if (plan.scanners == 0) {
       throw InputError(path_ + ": holds no sensor_msgs/LaserScan (topics: " +
@@ -81,10 +83,11 @@ class TopicChoice {
     AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
     AddOne({TopicKind::kPressure}, "pressure", "log.pressure_topic", options.pressure_topic, &plan);
     for (const auto& [name, kind] : kinds_) {
-      if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0});
+      if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0, {}});
     }
     plan.mounts.resize(plan.scanners);
-    plan.clock_offsets.resize(plan.topics.size());
+    plan.clocks.resize(plan.topics.size());
+    plan.ranges.resize(plan.scanners);
     return plan;
   }
 
@@ -122,7 +125,7 @@ class TopicChoice {
               const std::string& given, BagPlan* plan) const {
     const std::vector<std::string> picked = Pick(wanted, what, option, given);
     if (picked.size() > 1) throw InputError(path_ + ": " + option + ": takes one topic");
-    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0});
+    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0, {}});
   }
 
   std::string path_;
@@ -160,14 +163,55 @@ std::optional<std::size_t> BagStreams::Find(std::uint32_t connection) {
   return stream;
 }
 
-std::optional<RosLaserScan> ParseScan(TopicKind kind, const BagMessage& message,
-                                      const LogOptions& options) {
-  if (kind == TopicKind::kScan) {
-    return ParseLaserScan(message.data, message.size, message.encoding);
+bool ReadsOtherwise(const BagPlan& one, const BagPlan& other) {
+  constexpr double kSameOffset = 1.0;  // s; nearer, the beginning said as much
+  constexpr double kSameMount = 1e-9;
+  const auto same_topic = [](const BagTopic& a, const BagTopic& b) { return a.frame == b.frame; };
+  const auto same_clock = [](const TopicClock& a, const TopicClock& b) {
+    return a.is_steady == b.is_steady && a.whole_seconds == b.whole_seconds &&
+           a.offset.has_value() == b.offset.has_value() &&
+           std::abs(a.offset.value_or(0.0) - b.offset.value_or(0.0)) < kSameOffset;
+  };
+  const auto same_mount = [](const PlanarMount& a, const PlanarMount& b) {
+    return a.upside_down == b.upside_down &&
+           (a.T_robot_laser.AsVector() - b.T_robot_laser.AsVector()).norm() < kSameMount;
+  };
+  const auto same_ranges = [](const ScannerRanges& a, const ScannerRanges& b) {
+    return a.scale == b.scale && a.believes_range_min == b.believes_range_min;
+  };
+  const auto all = [](const auto& a, const auto& b, const auto& same) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+  };
+  return !all(one.topics, other.topics, same_topic) || !all(one.clocks, other.clocks, same_clock) ||
+         !all(one.mounts, other.mounts, same_mount) ||
+         !all(one.ranges, other.ranges, same_ranges) || one.is_disordered != other.is_disordered ||
+         one.odometry_frame != other.odometry_frame || one.robot_frame != other.robot_frame ||
+         (one.R_robot_imu - other.R_robot_imu).norm() > kSameMount;
+}
+
+std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message,
+                                       const LogOptions& options) {
+  const auto as_message = [](auto parsed) -> std::optional<RosMessage> {
+    if (!parsed) return std::nullopt;
+    return RosMessage(std::move(*parsed));
+  };
+  const unsigned char* const data = message.data;
+  const EchoChoice echo = options.strongest_echo ? EchoChoice::kStrongest : EchoChoice::kFirst;
+  switch (kind) {
+    case TopicKind::kScan:
+      return as_message(ParseLaserScan(data, message.size, message.encoding));
+    case TopicKind::kMultiEcho:
+      return as_message(ParseMultiEchoLaserScan(data, message.size, echo, message.encoding));
+    case TopicKind::kOdometry:
+      return as_message(ParseOdometry(data, message.size, message.encoding));
+    case TopicKind::kTransforms:
+      return as_message(ParseTransforms(data, message.size, message.encoding));
+    case TopicKind::kImu:
+      return as_message(ParseImu(data, message.size, message.encoding));
+    case TopicKind::kPressure:
+      return as_message(ParseFluidPressure(data, message.size, message.encoding));
   }
-  return ParseMultiEchoLaserScan(
-      message.data, message.size,
-      options.strongest_echo ? EchoChoice::kStrongest : EchoChoice::kFirst, message.encoding);
+  return std::nullopt;
 }
 
 bool IsRangeLimit(double range_max) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What of a bag is read: which topics as what, where their sensors sit, whose clock stamps them.
 // Topics are chosen by type and options (bag_plan.cpp); the rest is found by a look at the bag
-// (bag_look.hpp).
+// (bag_look.hpp), and again by all of it (bag_evidence.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +10,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "clock_evidence.hpp"
 #include "masked_mapper/log/frame_tree.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
+#include "scanner_evidence.hpp"
 
 namespace masked_mapper {
 
@@ -28,6 +31,7 @@ struct BagTopic {
   std::string name;
   TopicKind kind = TopicKind::kScan;
   std::size_t scanner = 0;
+  std::string frame;  ///< of several scanners that share the topic, the one that is read
 };
 
 struct BagPlan {
@@ -38,10 +42,12 @@ struct BagPlan {
   std::string odometry_frame;       ///< of tf, when there is no Odometry; empty: none
   std::string robot_frame;
   Eigen::Matrix3d R_robot_imu = Eigen::Matrix3d::Identity();
-  std::vector<std::optional<double>> clock_offsets;  ///< s, of topics: header minus recording
-  double clock_offset = 0.0;                         ///< s, of the first scanner
-  double max_range = 0.0;                            ///< m
-  float no_return = 0.0F;                            ///< m; 0: each scan's own range_max
+  std::vector<TopicClock> clocks;     ///< of the topics
+  double clock_offset = 0.0;          ///< s, header minus recording, of the first scanner
+  std::vector<ScannerRanges> ranges;  ///< of the scanners
+  bool is_disordered = false;         ///< messages do not stand in the order of their recording
+  double max_range = 0.0;             ///< m
+  float no_return = 0.0F;             ///< m; 0: each scan's own range_max
 };
 
 /// Which topics to read, by their types and the user's options. Throws InputError, `path` in front:
@@ -66,9 +72,16 @@ class BagStreams {
   std::map<std::uint32_t, std::optional<std::size_t>> streams_;
 };
 
-/// A scan of either type.
-std::optional<RosLaserScan> ParseScan(TopicKind kind, const BagMessage& message,
-                                      const LogOptions& options);
+/// Whether a bag gives other observations by one plan than by the other. What the limits of ranges
+/// are was settled by the beginning, and is no matter.
+bool ReadsOtherwise(const BagPlan& one, const BagPlan& other);
+
+using RosMessage =
+    std::variant<RosLaserScan, RosOdometry, std::vector<RosTransform>, RosImu, RosFluidPressure>;
+
+/// Empty when the message is malformed.
+std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message,
+                                       const LogOptions& options);
 
 /// Whether a scan's range_max says anything.
 bool IsRangeLimit(double range_max);

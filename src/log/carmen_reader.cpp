@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/carmen_reader.hpp"
+#include "carmen_reader.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -255,16 +255,30 @@ void ReadCarmenLog(const std::string& path, const LogOptions& options,
   }
 }
 
+class CarmenPlan final : public LogPlan {
+ public:
+  CarmenPlan(std::string path, const LogOptions& options)
+      : path_(std::move(path)), options_(options), calibration_(LookAt(path_, options)) {}
+
+  std::unique_ptr<LogReader> Read() override {
+    LogStatistics statistics;
+    statistics.max_range = calibration_.max_range();
+    return std::make_unique<ReadAhead>(
+        statistics,
+        [path = path_, options = options_, calibration = calibration_](
+            const ReadAhead::Sink& sink) { ReadCarmenLog(path, options, calibration, sink); });
+  }
+
+ private:
+  std::string path_;
+  LogOptions options_;
+  ScanCalibration calibration_;
+};
+
 }  // namespace
 
-std::unique_ptr<LogReader> OpenCarmenLog(const std::string& path, const LogOptions& options) {
-  const ScanCalibration calibration = LookAt(path, options);
-  LogStatistics statistics;
-  statistics.max_range = calibration.max_range();
-  return std::make_unique<ReadAhead>(statistics,
-                                     [path, options, calibration](const ReadAhead::Sink& sink) {
-                                       ReadCarmenLog(path, options, calibration, sink);
-                                     });
+std::unique_ptr<LogPlan> PlanCarmenLog(const std::string& path, const LogOptions& options) {
+  return std::make_unique<CarmenPlan>(path, options);
 }
 
 }  // namespace masked_mapper

@@ -15,7 +15,16 @@ constexpr std::size_t kDeepest = 100;
 void FrameTree::Add(const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child) {
   if (child.empty() || links_.size() >= kMostFrames) return;
-  links_.emplace(child, Link{parent, T_parent_child});
+  const auto [link, is_new] = links_.emplace(child, Link{parent, T_parent_child});
+  if (is_new || link->second.parent != parent) return;
+  const double travel =
+      (T_parent_child.translation() - link->second.T_parent_child.translation()).norm();
+  link->second.travel = std::max(link->second.travel, travel);
+}
+
+double FrameTree::Travel(const std::string& child) const {
+  const auto link = links_.find(child);
+  return link == links_.end() ? 0.0 : link->second.travel;
 }
 
 bool FrameTree::Knows(const std::string& frame) const { return links_.count(frame) > 0; }

@@ -153,13 +153,18 @@ class Summariser {
 
 }  // namespace
 
-LogSummary Summarise(const std::string& path, const LogOptions& options) {
-  const std::unique_ptr<LogReader> reader = OpenLog(path, options);
-  Summariser summariser;
-  while (const std::optional<Observation> observation = reader->Next()) {
-    std::visit([&summariser](const auto& reading) { summariser.Add(reading); }, *observation);
+LogSummary Summarise(LogSource& source) {
+  while (true) {
+    const std::unique_ptr<LogReader> reader = source.Read();
+    Summariser summariser;
+    while (const std::optional<Observation> observation = reader->Next()) {
+      std::visit([&summariser](const auto& reading) { summariser.Add(reading); }, *observation);
+    }
+    if (source.Reconsider()) continue;
+    LogSummary summary = summariser.Finish(reader->Statistics());
+    summary.findings = source.Findings();
+    return summary;
   }
-  return summariser.Finish(reader->Statistics());
 }
 
 }  // namespace masked_mapper

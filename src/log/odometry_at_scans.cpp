@@ -17,8 +17,11 @@ constexpr std::size_t kMostWaiting = 1000;
 void OdometryAtScans::Add(Observation observation, std::size_t stream) {
   newest_ = Stamp(observation);
   if (const auto* reading = std::get_if<OdometryReading>(&observation)) {
+    // Of what came before, a scan that still comes needs the last alone.
+    if (scans_waiting_ == 0) readings_.clear();
     readings_.push_back(*reading);
   }
+  scans_waiting_ += std::holds_alternative<LaserScan>(observation) ? 1 : 0;
   waiting_.emplace_back(std::move(observation), stream);
 }
 
@@ -26,6 +29,7 @@ std::optional<std::pair<Observation, std::size_t>> OdometryAtScans::Next() {
   if (waiting_.empty()) return std::nullopt;
   auto* scan = std::get_if<LaserScan>(&waiting_.front().first);
   if (scan != nullptr && !scan->T_odom_robot && !Complete(scan)) return std::nullopt;
+  if (scan != nullptr) --scans_waiting_;
   std::pair<Observation, std::size_t> next = std::move(waiting_.front());
   waiting_.pop_front();
   return next;

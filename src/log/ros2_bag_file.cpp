@@ -59,6 +59,7 @@ class Ros2BagFile::Impl {
     for (const fs::path& name : FilesOf(path)) {
       const SqliteMessages file(name);
       by_time.emplace_back(file.first_time(), name);
+      end_time_ = std::max(end_time_, file.last_time());
       for (const auto& [id, topic] : file.topics()) {
         const auto number = static_cast<std::uint32_t>(ids.size());
         if (number >= kMostBagTopics) throw InputError(path + ": too many topics");
@@ -109,6 +110,7 @@ class Ros2BagFile::Impl {
 
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
   bool truncated() const { return truncated_; }
+  double end_time() const { return 1e-9 * static_cast<double>(end_time_); }
   std::uint64_t damaged() const { return damaged_; }
   double Progress() const {
     const double within = open_ ? open_->Progress() : 0.0;
@@ -119,6 +121,7 @@ class Ros2BagFile::Impl {
   std::map<std::uint32_t, BagConnection> connections_;
   std::map<std::string, std::map<std::int64_t, std::uint32_t>> topics_;  ///< by file and its id
   std::vector<fs::path> files_;  ///< in order of their first messages
+  std::int64_t end_time_ = 0;    ///< ns
   std::size_t file_ = 0;
   std::unique_ptr<SqliteMessages> open_;
   bool truncated_ = false;
@@ -143,6 +146,7 @@ void Ros2BagFile::Rewind() { impl_->Rewind(); }
 const std::map<std::uint32_t, BagConnection>& Ros2BagFile::Connections() const {
   return impl_->connections();
 }
+std::optional<double> Ros2BagFile::EndTime() const { return impl_->end_time(); }
 bool Ros2BagFile::Truncated() const { return impl_->truncated(); }
 std::uint64_t Ros2BagFile::Damaged() const { return impl_->damaged(); }
 double Ros2BagFile::Progress() const { return impl_->Progress(); }

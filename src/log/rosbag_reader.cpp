@@ -1,26 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/rosbag_reader.hpp"
+#include "rosbag_reader.hpp"
 
+#include <functional>
+#include <mutex>
 #include <utility>
 
 #include "bag_look.hpp"
 #include "bag_observations.hpp"
-#include "masked_mapper/log/bag_file.hpp"
+#include "bag_sequence.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "open_bag.hpp"
+#include "sorted_bag.hpp"
 
 namespace masked_mapper {
 namespace {
 
-std::unique_ptr<RosBag> OpenBag(const std::string& path) {
-  if (Ros2BagFile::IsBag(path)) return std::make_unique<Ros2BagFile>(path);
-  return std::make_unique<BagFile>(path);
-}
+/// The bag of a plan between two passes: opened once, handed from pass to pass.
+class BagShelf {
+ public:
+  using Open = std::function<std::unique_ptr<RosBag>()>;
+  explicit BagShelf(Open open) : open_(std::move(open)) {}
 
-void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& plan,
+  /// At its first message. Another is opened when a pass still has the one.
+  std::unique_ptr<RosBag> Take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!bag_) return open_();
+    bag_->Rewind();
+    return std::move(bag_);
+  }
+  void PutBack(std::unique_ptr<RosBag> bag) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    bag_ = std::move(bag);
+  }
+
+ private:
+  Open open_;
+  std::mutex mutex_;
+  std::unique_ptr<RosBag> bag_;
+};
+
+/// False when nobody wanted the rest.
+bool ReadBag(const LogOptions& options, const BagPlan& plan, RosBag* bag, BagEvidence* evidence,
              const ReadAhead::Sink& sink) {
-  const std::unique_ptr<RosBag> bag = OpenBag(path);
-  BagObservations reader(options, plan, *bag);
+  BagObservations reader(options, plan, *bag, evidence);
   ObservationBatch batch;
   std::size_t messages = 0;
   bool more = true;
@@ -37,26 +59,105 @@ void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& 
     if (!full && more) continue;
     batch.statistics = reader.Statistics();
     batch.progress = bag->Progress();
-    if (!sink(std::exchange(batch, {}))) return;
+    if (!sink(std::exchange(batch, {}))) return false;
   }
+  return true;
 }
+
+/// What the first pass to the end found, handed from its thread to the plan.
+struct WholeBag {
+  std::mutex mutex;
+  std::unique_ptr<BagEvidence> evidence;
+};
+
+class RosBagPlan final : public LogPlan {
+ public:
+  RosBagPlan(const std::vector<std::string>& paths, const LogOptions& options)
+      : options_(options),
+        open_([paths]() -> std::unique_ptr<RosBag> {
+          if (paths.size() == 1) return OpenBag(paths.front());
+          return std::make_unique<BagSequence>(paths);
+        }),
+        shelf_(std::make_shared<BagShelf>(open_)),
+        whole_(std::make_shared<WholeBag>()) {
+    std::unique_ptr<RosBag> bag = shelf_->Take();
+    if (!bag->IsIndexed()) {
+      while (bag->Next()) {
+      }  // the connections are wherever they are
+      bag->Rewind();
+    }
+    const std::string& path = paths.front();
+    topics_ = ChooseTopics(path, bag->Connections(), options);
+    plan_ = LookAtBag(path, options, topics_, bag.get());
+    shelf_->PutBack(std::move(bag));
+  }
+
+  std::unique_ptr<LogReader> Read() override {
+    LogStatistics statistics;
+    statistics.max_range = plan_.max_range;
+    const auto pass = [options = options_, plan = plan_, topics = topics_, shelf = shelf_,
+                       whole = is_settled_ ? nullptr : whole_](const ReadAhead::Sink& sink) {
+      std::unique_ptr<RosBag> bag = shelf->Take();
+      std::unique_ptr<BagEvidence> evidence;
+      if (whole) evidence = std::make_unique<BagEvidence>(options, topics);
+      const bool to_the_end = ReadBag(options, plan, bag.get(), evidence.get(), sink);
+      shelf->PutBack(std::move(bag));
+      if (!whole || !to_the_end) return;
+      const std::lock_guard<std::mutex> lock(whole->mutex);
+      whole->evidence = std::move(evidence);
+    };
+    return std::make_unique<ReadAhead>(statistics, pass);
+  }
+
+  bool Reconsider() override {
+    const std::lock_guard<std::mutex> lock(whole_->mutex);
+    if (is_settled_ || !whole_->evidence) return false;
+    is_settled_ = true;
+    BagPlan plan = whole_->evidence->Conclude();
+    const bool otherwise = ReadsOtherwise(plan_, plan);
+    if (otherwise && !LimitIsOtherwise(plan)) {
+      plan.max_range = plan_.max_range;
+      plan.no_return = plan_.no_return;
+    }
+    if (otherwise) plan_ = std::move(plan);
+    if (plan_.is_disordered) SortShelf();
+    findings_ = whole_->evidence->Findings(plan_);
+    whole_->evidence.reset();
+    return otherwise;
+  }
+
+  std::vector<SensorFinding> Findings() const override { return findings_; }
+
+ private:
+  bool LimitIsOtherwise(const BagPlan& plan) const {
+    return plan.ranges.front().scale != plan_.ranges.front().scale;
+  }
+
+  void SortShelf() {
+    shelf_ = std::make_shared<BagShelf>([open = open_, plan = plan_]() -> std::unique_ptr<RosBag> {
+      std::unique_ptr<RosBag> bag = open();
+      BagStreams streams(plan, *bag);
+      return std::make_unique<SortedBag>(std::move(bag), [&streams](std::uint32_t connection) {
+        return streams.Find(connection).has_value();
+      });
+    });
+  }
+
+  LogOptions options_;
+  BagShelf::Open open_;
+  std::shared_ptr<BagShelf> shelf_;
+  std::shared_ptr<WholeBag> whole_;
+  BagPlan topics_;
+  BagPlan plan_;
+  bool is_settled_ = false;
+  std::vector<SensorFinding> findings_;
+};
 
 }  // namespace
 
-std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options) {
-  const std::unique_ptr<RosBag> bag = OpenBag(path);
-  if (!bag->IsIndexed()) {
-    while (bag->Next()) {
-    }  // the connections are wherever they are
-    bag->Rewind();
-  }
-  const BagPlan plan =
-      LookAtBag(path, options, ChooseTopics(path, bag->Connections(), options), bag.get());
-  LogStatistics statistics;
-  statistics.max_range = plan.max_range;
-  return std::make_unique<ReadAhead>(
-      statistics,
-      [path, options, plan](const ReadAhead::Sink& sink) { ReadBag(path, options, plan, sink); });
+std::unique_ptr<LogPlan> PlanRosBag(const std::vector<std::string>& paths,
+                                    const LogOptions& options) {
+  return std::make_unique<RosBagPlan>(paths, options);
 }
 
 }  // namespace masked_mapper

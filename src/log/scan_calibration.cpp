@@ -104,6 +104,7 @@ BeamGeometry ScanCalibration::Geometry(const CarmenScan& scan) const {
 LaserScan ScanCalibration::Apply(CarmenScan scan, std::uint64_t* invalid_ranges) const {
   LaserScan result;
   result.stamp = scan.stamp;
+  result.log_stamp = scan.stamp;
   const BeamGeometry geometry = Geometry(scan);
   const double sense = upside_down_ ? -1.0 : 1.0;
   result.first_angle = sense * geometry.first_angle;

@@ -50,6 +50,7 @@ void Enter(const LaserScan& scan, const Pose2& T_now_then, float max_range,
 LaserScan MergeScans(const std::vector<const LaserScan*>& scans) {
   LaserScan merged;
   merged.stamp = scans.front()->stamp;
+  merged.log_stamp = scans.front()->log_stamp;
   merged.T_odom_robot = scans.front()->T_odom_robot;
   double step = kCoarsestStep;
   for (const LaserScan* scan : scans) {

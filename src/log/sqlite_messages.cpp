@@ -153,9 +153,12 @@ void SqliteMessages::ReadTopics() {
 }
 
 void SqliteMessages::ReadExtent() {
-  const Statement last = Prepare("SELECT max(id) FROM messages");
+  const Statement last = Prepare("SELECT id, timestamp FROM messages ORDER BY id DESC LIMIT 1");
   if (!last) Fail();
-  if (Step(last.get())) greatest_id_ = sqlite3_column_int64(last.get(), 0);
+  if (Step(last.get())) {
+    greatest_id_ = sqlite3_column_int64(last.get(), 0);
+    last_time_ = sqlite3_column_int64(last.get(), 1);
+  }
   const std::optional<Row> first = Next();
   if (first) first_time_ = first->time;
   // A page that only the far end of the table needs is missed when the reading gets there.

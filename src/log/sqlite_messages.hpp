@@ -30,6 +30,8 @@ class SqliteMessages {
   const std::string& path() const { return path_; }
   const std::map<std::int64_t, BagConnection>& topics() const { return topics_; }
   std::int64_t first_time() const { return first_time_; }
+  /// ns, of the message with the greatest id.
+  std::int64_t last_time() const { return last_time_; }
   /// The file ends before its rows do.
   bool damaged() const { return damaged_; }
 
@@ -68,6 +70,7 @@ class SqliteMessages {
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, BagConnection> topics_;
   std::int64_t first_time_ = 0;  ///< ns
+  std::int64_t last_time_ = 0;
   std::int64_t greatest_id_ = 0;
   Statement messages_;
   std::int64_t last_id_ = 0;

@@ -7,6 +7,7 @@
 
 #include "database.hpp"
 #include "map_rows.hpp"
+#include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "packed_bytes.hpp"
@@ -75,6 +76,12 @@ void WriteLog(const BuildingMap& result, const Database& database) {
   }
   Statement warning(database, "INSERT INTO warnings(text) VALUES (?)");
   for (const std::string& text : result.warnings) warning.BindText(text).Put();
+  Statement finding(database, "INSERT INTO findings VALUES (?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < result.findings.size(); ++i) {
+    const SensorFinding& found = result.findings[i];
+    finding.Bind(Id(i)).BindText(found.what).Bind(found.value).Bind(found.sigma);
+    finding.Bind(found.t_a).Bind(found.t_b).BindText(found.consequence).Put();
+  }
 }
 
 void WriteNodes(const PoseGraph& graph, const Database& database) {
@@ -144,6 +151,19 @@ void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory, const Databa
   }
 }
 
+// Of poses whose stamp is not their log's own, but for the shift of their drive.
+void WriteLogStamps(const BuildingMap& result, const Database& database) {
+  Statement insert(database, "INSERT INTO log_stamps VALUES (?,?)");
+  for (std::size_t drive = 0; drive < result.drives.size(); ++drive) {
+    const IndexRange poses = PosesOfDrive(result, drive);
+    for (std::size_t i = poses.begin; i < poses.end; ++i) {
+      const TrajectoryPose& pose = result.trajectory[i];
+      if (pose.log_stamp == pose.stamp - result.drives[drive].stamp_offset_s) continue;
+      insert.Bind(Id(i)).Bind(pose.log_stamp).Put();
+    }
+  }
+}
+
 void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& database) {
   Statement insert(database, "INSERT INTO scans VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   std::string bytes;
@@ -193,6 +213,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     WriteEdges(result.graph, database);
     WriteClosures(result.closures, database);
     WriteTrajectory(result.trajectory, database);
+    WriteLogStamps(result, database);
     WriteScans(result.kept_scans, database);
     WriteDrives(result.drives, database);
     Seal(database);

@@ -35,6 +35,7 @@ class Reader {
     ReadScans();
     LinkRows(version_, map_.result);
     ReadDrives();
+    ReadLogStamps();
     return std::move(map_);
   }
 
@@ -92,6 +93,17 @@ class Reader {
     }
     Statement warnings(database_, "SELECT text FROM warnings ORDER BY id");
     while (warnings.Next()) map_.result.warnings.emplace_back(warnings.Text());
+    Statement findings(database_, "SELECT * FROM findings ORDER BY id");
+    while (findings.Next()) {
+      TakeId(findings, map_.result.findings.size(), "findings");
+      SensorFinding finding;
+      finding.what = findings.Text();
+      for (double* number : {&finding.value, &finding.sigma, &finding.t_a, &finding.t_b}) {
+        *number = TakeFinite(findings, "findings");
+      }
+      finding.consequence = findings.Text();
+      map_.result.findings.push_back(std::move(finding));
+    }
   }
 
   void ReadFloors() {
@@ -252,6 +264,26 @@ class Reader {
       scan.ranges.push_back(range);
     }
     return scan;
+  }
+
+  // The log's own stamps: those of the map without the shift of the drive, but for some.
+  void ReadLogStamps() {
+    BuildingMap& map = map_.result;
+    for (TrajectoryPose& pose : map.trajectory) pose.log_stamp = pose.stamp;
+    for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
+      const IndexRange poses = PosesOfDrive(map, drive);
+      for (std::size_t i = poses.begin; i < poses.end; ++i) {
+        map.trajectory[i].log_stamp -= map.drives[drive].stamp_offset_s;
+      }
+    }
+    Statement rows(database_, "SELECT * FROM log_stamps ORDER BY id");
+    while (rows.Next()) {
+      const std::int64_t pose = TakeBelow(rows, map.trajectory.size(), "log_stamps", "the pose");
+      map.trajectory[static_cast<std::size_t>(pose)].log_stamp = TakeFinite(rows, "log_stamps");
+    }
+    for (KeptScan& kept : map.kept_scans) {
+      kept.scan.log_stamp = map.trajectory[kept.trajectory_index].log_stamp;
+    }
   }
 
   // Drives follow each other, each with a node and a pose at least, and keep to themselves.

@@ -19,7 +19,7 @@ struct Table {
 
 // Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
 // are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
-constexpr std::array<Table, 13> kTables = {{
+constexpr std::array<Table, 15> kTables = {{
     {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
@@ -54,6 +54,10 @@ constexpr std::array<Table, 13> kTables = {{
      " first_angle ANY NOT NULL, angle_step ANY NOT NULL, max_range ANY NOT NULL,"
      " odom_x ANY, odom_y ANY, odom_theta ANY,"
      " beam_count INTEGER NOT NULL, ranges BLOB NOT NULL, ranges_checksum INTEGER NOT NULL"},
+    {"log_stamps", "id INTEGER PRIMARY KEY, stamp ANY NOT NULL"},
+    {"findings",
+     "id INTEGER PRIMARY KEY, what TEXT NOT NULL, value ANY NOT NULL, sigma ANY NOT NULL,"
+     " t_a ANY NOT NULL, t_b ANY NOT NULL, consequence TEXT NOT NULL"},
     {"drives",
      "id INTEGER PRIMARY KEY, log TEXT NOT NULL, first_pose INTEGER NOT NULL,"
      " first_node INTEGER NOT NULL REFERENCES nodes(id), stamp_offset ANY NOT NULL,"
@@ -63,7 +67,8 @@ constexpr std::array<Table, 13> kTables = {{
      " checksum INTEGER NOT NULL"},
 }};
 
-// Version 1 knew one log, and nothing of who had named a floor.
+// Version 1 knew one log, and nothing of who had named a floor; version 2 no stamps but its own,
+// and nothing of what was found of sensors.
 constexpr const char* kFloorsOfVersion1 =
     "id INTEGER PRIMARY KEY, label TEXT NOT NULL, elevation ANY NOT NULL,"
     " elevation_sigma ANY NOT NULL, elevation_measured INTEGER NOT NULL";
@@ -94,6 +99,7 @@ std::vector<Table> TablesOf(std::int64_t version) {
   for (Table table : kTables) {
     const std::string_view name = table.name;
     if (version <= 1 && name == "drives") continue;
+    if (version <= 2 && (name == "log_stamps" || name == "findings")) continue;
     if (version <= 1 && name == "floors") table.columns = kFloorsOfVersion1;
     if (version <= 2 && name == "nodes") table.columns = kNodesOfVersion2;
     if (version <= 2 && name == "edges") table.columns = kEdgesOfVersion2;
@@ -218,12 +224,19 @@ void CheckSeal(Database& database, std::int64_t version) {
 
 // The columns are added where the newest version has them: rows are read by place.
 void Upgrade(Database& database, std::int64_t version) {
-  if (version <= 2) database.Run("ALTER TABLE edges ADD COLUMN closure INTEGER");
+  const auto make = [&database](std::string_view name) {
+    for (const Table& table : kTables) {
+      if (table.name == name) database.Run(CreateStatement(table));
+    }
+  };
+  if (version <= 2) {
+    database.Run("ALTER TABLE edges ADD COLUMN closure INTEGER");
+    make("log_stamps");
+    make("findings");
+  }
   if (version >= 2) return;
   database.Run("ALTER TABLE floors ADD COLUMN label_given INTEGER NOT NULL DEFAULT 0");
-  for (const Table& table : kTables) {
-    if (std::string_view(table.name) == "drives") database.Run(CreateStatement(table));
-  }
+  make("drives");
   NoteGivenLabels(database);
   if (database.Number("SELECT count(*) FROM nodes") == 0) return;
   database.Run(

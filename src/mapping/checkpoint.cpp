@@ -15,14 +15,14 @@ namespace masked_mapper {
 
 template <class Archive>
 void Serialize(Archive& archive, TrajectoryPose& pose) {
-  archive(pose.stamp, pose.floor, pose.in_transit, pose.node_before, pose.T_odom_robot,
-          pose.T_world_robot);
+  archive(pose.stamp, pose.log_stamp, pose.floor, pose.in_transit, pose.node_before,
+          pose.T_odom_robot, pose.T_world_robot);
 }
 
 template <class Archive>
 void Serialize(Archive& archive, LaserScan& scan) {
-  archive(scan.stamp, scan.T_robot_laser, scan.first_angle, scan.angle_step, scan.max_range,
-          scan.ranges, scan.T_odom_robot);
+  archive(scan.stamp, scan.log_stamp, scan.T_robot_laser, scan.first_angle, scan.angle_step,
+          scan.max_range, scan.ranges, scan.T_odom_robot);
 }
 
 template <class Archive>
@@ -64,10 +64,17 @@ void Serialize(Archive& archive, FloorInterval& interval) {
 }
 
 template <class Archive>
+void Serialize(Archive& archive, SensorFinding& finding) {
+  archive(finding.what, finding.value, finding.sigma, finding.t_a, finding.t_b,
+          finding.consequence);
+}
+
+template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
   archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
           survey.median_turn_rad, survey.median_period_s, survey.floors.levels,
-          survey.floors.intervals, survey.floor_source, survey.warnings);
+          survey.floors.intervals, survey.floor_source, survey.findings, survey.reconsidered,
+          survey.warnings);
 }
 
 namespace {

@@ -9,7 +9,6 @@
 
 #include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
-#include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
@@ -28,88 +27,101 @@ void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
                    FixedText(log.first_stamp, 3) + " to " + FixedText(log.last_stamp, 3) + " s");
 }
 
-/// Looks at the first turns of the drive once more, with beams.
-std::string FaultOfMount(const std::string& path, const MappingOptions& options) {
-  MountCheck check(options.motion);
-  const std::unique_ptr<LogReader> log = OpenLog(path, options.log);
-  while (!check.IsSettled()) {
-    const std::optional<Observation> observation = log->Next();
-    if (!observation) break;
-    if (const auto* scan = std::get_if<LaserScan>(&*observation)) check.Observe(*scan);
+/// One pass through the log, scans with their beams: all that is to be known of it before it is
+/// mapped.
+class Surveyor {
+ public:
+  Surveyor(const MappingOptions& options, const std::vector<FloorLabel>& labels)
+      : floors_(options.floors), mount_(options.motion) {
+    if (!options.floors.file.empty()) floors_.UseLabels(labels);
   }
-  return check.Warning();
-}
+
+  void Observe(const Observation& observation) {
+    floors_.Observe(observation);
+    if (const auto* reading = std::get_if<OdometryReading>(&observation)) NoteWay(*reading);
+    if (const auto* scan = std::get_if<LaserScan>(&observation)) ObserveScan(*scan);
+  }
+
+  LogSurvey Finish() {
+    survey_.floors = floors_.Finish();
+    NoteTravel(way_, survey_.floors);
+    survey_.floor_source = floors_.source();
+    survey_.warnings = floors_.warnings();
+    if (survey_.odometry_moves) {
+      const std::string fault = mount_.Warning();
+      if (!fault.empty()) survey_.warnings.push_back(fault);
+    } else if (survey_.has_odometry) {
+      survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
+    }
+    survey_.median_travel_m = Median(std::move(travels_));
+    survey_.median_turn_rad = Median(std::move(turns_));
+    survey_.median_period_s = Median(std::move(periods_));
+    return std::move(survey_);
+  }
+
+ private:
+  void ObserveScan(const LaserScan& scan) {
+    ++survey_.scans;
+    if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
+    stamp_before_ = scan.stamp;
+    if (!scan.T_odom_robot) return;
+    if (!mount_.IsSettled()) mount_.Observe(scan);
+    NoteWay({scan.stamp, *scan.T_odom_robot});
+    if (T_odom_before_) {
+      const Pose2 step = Between(*T_odom_before_, *scan.T_odom_robot);
+      const double travel = std::hypot(step.x, step.y);
+      if (travel > 0.01 || std::abs(step.theta) > 0.01) {
+        travels_.push_back(static_cast<float>(travel));
+        turns_.push_back(static_cast<float>(std::abs(step.theta)));
+      }
+    }
+    T_odom_before_ = scan.T_odom_robot;
+  }
+
+  void NoteWay(const OdometryReading& reading) {
+    const double step = T_odom_noted_ ? Distance(*T_odom_noted_, reading.T_odom_robot) : 0.0;
+    survey_.has_odometry = true;
+    survey_.odometry_moves |=
+        T_odom_noted_ && T_odom_noted_->AsVector() != reading.T_odom_robot.AsVector();
+    way_.push_back({reading.stamp, (way_.empty() ? 0.0 : way_.back().travelled_m) + step});
+    T_odom_noted_ = reading.T_odom_robot;
+  }
+
+  LogSurvey survey_;
+  FloorTracker floors_;
+  MountCheck mount_;
+  std::optional<double> stamp_before_;  ///< of the scan before, as all below
+  std::optional<Pose2> T_odom_before_;
+  std::optional<Pose2> T_odom_noted_;
+  std::vector<TravelledWay> way_;
+  std::vector<float> travels_;  ///< m, from scan to scan
+  std::vector<float> turns_;    ///< rad
+  std::vector<float> periods_;  ///< s
+};
 
 }  // namespace
 
-LogSurvey SurveyLog(const std::string& path, const MappingOptions& options) {
-  LogOptions log_options = options.log;
-  log_options.read_ranges = false;
-  FloorTracker floors(options.floors);
+LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
   std::vector<FloorLabel> labels;
-  if (!options.floors.file.empty()) {
-    labels = ReadFloorFile(options.floors.file);
-    floors.UseLabels(labels);
-  }
-  const std::unique_ptr<LogReader> log = OpenLog(path, log_options);
-  LogSurvey survey;
-  std::optional<Pose2> T_odom_before;
-  std::optional<double> stamp_before;
-  std::vector<TravelledWay> way;
-  std::vector<float> travels;
-  std::vector<float> turns;
-  std::vector<float> periods;
-  std::optional<Pose2> T_odom_noted;
-  const auto note_way = [&](const OdometryReading& reading) {
-    const double step = T_odom_noted ? Distance(*T_odom_noted, reading.T_odom_robot) : 0.0;
-    survey.has_odometry = true;
-    survey.odometry_moves |=
-        T_odom_noted && T_odom_noted->AsVector() != reading.T_odom_robot.AsVector();
-    way.push_back({reading.stamp, (way.empty() ? 0.0 : way.back().travelled_m) + step});
-    T_odom_noted = reading.T_odom_robot;
-  };
-  while (const std::optional<Observation> observation = log->Next()) {
-    floors.Observe(*observation);
-    if (const auto* reading = std::get_if<OdometryReading>(&*observation)) note_way(*reading);
-    const auto* scan = std::get_if<LaserScan>(&*observation);
-    if (scan == nullptr) continue;
-    ++survey.scans;
-    if (stamp_before) periods.push_back(static_cast<float>(scan->stamp - *stamp_before));
-    stamp_before = scan->stamp;
-    if (!scan->T_odom_robot) continue;
-    note_way({scan->stamp, *scan->T_odom_robot});
-    if (T_odom_before) {
-      const Pose2 step = Between(*T_odom_before, *scan->T_odom_robot);
-      const double travel = std::hypot(step.x, step.y);
-      if (travel > 0.01 || std::abs(step.theta) > 0.01) {
-        travels.push_back(static_cast<float>(travel));
-        turns.push_back(static_cast<float>(std::abs(step.theta)));
-      }
+  if (!options.floors.file.empty()) labels = ReadFloorFile(options.floors.file);
+  bool reconsidered = false;
+  while (true) {
+    const std::unique_ptr<LogReader> log = source.Read();
+    Surveyor surveyor(options, labels);
+    while (const std::optional<Observation> observation = log->Next()) {
+      surveyor.Observe(*observation);
     }
-    T_odom_before = scan->T_odom_robot;
-  }
-  if (survey.scans == 0) throw InputError(path + ": not one valid laser scan in it");
-  if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
-  if (floors.NeedsRanges()) {
-    const std::unique_ptr<LogReader> again = OpenLog(path, options.log);
-    while (const std::optional<Observation> observation = again->Next()) {
-      floors.Observe(*observation);
+    if (source.Reconsider()) {
+      reconsidered = true;
+      continue;
     }
+    LogSurvey survey = surveyor.Finish();
+    if (survey.scans == 0) throw InputError(source.path() + ": not one valid laser scan in it");
+    if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
+    survey.reconsidered = reconsidered;
+    survey.findings = source.Findings();
+    return survey;
   }
-  survey.floors = floors.Finish();
-  NoteTravel(way, survey.floors);
-  survey.floor_source = floors.source();
-  survey.warnings = floors.warnings();
-  if (survey.odometry_moves) {
-    const std::string fault = FaultOfMount(path, options);
-    if (!fault.empty()) survey.warnings.push_back(fault);
-  } else if (survey.has_odometry) {
-    survey.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
-  }
-  survey.median_travel_m = Median(std::move(travels));
-  survey.median_turn_rad = Median(std::move(turns));
-  survey.median_period_s = Median(std::move(periods));
-  return survey;
 }
 
 MotionSource SettleMotionSource(const std::string& path, const MotionOptions& options,

@@ -45,9 +45,10 @@ std::string PackState(const LogSurvey& survey, MaskedMapper& mapper) {
 // One run over a log, with whatever is kept of it on the way.
 class LogDrive {
  public:
-  LogDrive(const std::string& path, const std::string& mask, const MappingOptions& options,
+  LogDrive(LogSource& source, const std::string& mask, const MappingOptions& options,
            ProgressSink& progress, CheckpointStore* checkpoints)
-      : path_(path),
+      : source_(source),
+        path_(source.path()),
         mask_(mask),
         options_(options),
         progress_(progress),
@@ -64,8 +65,9 @@ class LogDrive {
         reader(survey_bytes, mapper_bytes);
         reader.RequireEnd();
         survey_ = UnpackSurvey(survey_bytes);
+        if (survey_.reconsidered) ReadToTheEnd();
       } else {
-        survey_ = SurveyLog(path_, options_);
+        survey_ = SurveyLog(source_, options_);
       }
     }
     settled_ = options_;
@@ -95,6 +97,10 @@ class LogDrive {
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
+    result.findings = survey_.findings;
+    for (const SensorFinding& finding : survey_.findings) {
+      result.warnings.push_back(path_ + ": " + TextOf(finding));
+    }
     for (const std::string& warning : survey_.warnings) {
       result.warnings.push_back(path_ + ": " + warning);
     }
@@ -104,10 +110,18 @@ class LogDrive {
   }
 
  private:
+  // What all of the log says of its sensors is not kept: it is found again.
+  void ReadToTheEnd() {
+    const std::unique_ptr<LogReader> log = source_.Read();
+    while (log->Next()) {
+    }
+    source_.Reconsider();
+  }
+
   void Begin() {
     if (mapper_) spent_ += mapper_->result().seconds;  // what is driven again costs twice
     mapper_.emplace(mask_, settled_, survey_.floors);
-    log_ = OpenLog(path_, options_.log);
+    log_ = source_.Read();
     observations_ = scans_ = 0;
   }
 
@@ -172,6 +186,7 @@ class LogDrive {
     }
   }
 
+  LogSource& source_;
   std::string path_;
   std::string mask_;
   MappingOptions options_;
@@ -190,19 +205,25 @@ class LogDrive {
 
 }  // namespace
 
-BuildingMap MapLog(const std::string& path, const std::string& mask, const MappingOptions& options,
+BuildingMap MapLog(LogSource& source, const std::string& mask, const MappingOptions& options,
                    ProgressSink& progress, CheckpointStore* checkpoints) {
   double total_seconds = 0.0;
   std::optional<StageTimer> total_timer(std::in_place, total_seconds);
   BuildingMap result;
   try {
-    result = LogDrive(path, mask, options, progress, checkpoints).Map();
+    result = LogDrive(source, mask, options, progress, checkpoints).Map();
   } catch (const StateError& error) {
-    throw InputError(path + ": the checkpoint does not fit this log: " + error.what());
+    throw InputError(source.path() + ": the checkpoint does not fit this log: " + error.what());
   }
   total_timer.reset();
   result.seconds.total = total_seconds;
   return result;
+}
+
+BuildingMap MapLog(const std::string& path, const std::string& mask, const MappingOptions& options,
+                   ProgressSink& progress, CheckpointStore* checkpoints) {
+  LogSource source(path, options.log);
+  return MapLog(source, mask, options, progress, checkpoints);
 }
 
 }  // namespace masked_mapper

@@ -173,6 +173,7 @@ void MaskedMapper::RecordPose(const LaserScan& scan, const FloorInterval& interv
   if (IsNextKept()) travelled_since_kept_m_ = 0.0;
   TrajectoryPose pose;
   pose.stamp = scan.stamp;
+  pose.log_stamp = scan.log_stamp;
   pose.node_before = static_cast<NodeId>(result_.graph.nodes().size() - 1);
   pose.floor = static_cast<FloorId>(interval.level);
   pose.in_transit = interval.in_transit;

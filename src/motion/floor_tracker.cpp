@@ -41,15 +41,9 @@ bool FloorTracker::HasLabels() const {
                      [](const FloorLabel& label) { return label.label != "-"; });
 }
 
-bool FloorTracker::NeedsRanges() const {
-  if (!Uses(FloorSource::kLidar) || !has_scans_ || lidar_.HasRanges()) return false;
-  if (track_.Travels() &&
-      track_.Stays(options_.lidar.cab_radius, options_.lidar.closed_s).empty()) {
-    return false;
-  }
-  if (options_.source == FloorSource::kLidar) return true;
-  return !HasLabels() && HeightsOfPressure(pressure_, options_.pressure.heights).samples.empty() &&
-         !acceleration_.FindRides(track_, options_.storeys).usable;
+bool FloorTracker::MayHaveRidden() const {
+  return !track_.Travels() ||
+         !track_.Stays(options_.lidar.cab_radius, options_.lidar.closed_s).empty();
 }
 
 FloorTimeline FloorTracker::FinishByClimbs(FloorSource source,
@@ -97,7 +91,7 @@ FloorTimeline FloorTracker::Finish() {
   if (options_.source != FloorSource::kLabels && sensor == "acceleration") {
     return FinishByClimbs(FloorSource::kAcceleration, transits);
   }
-  if (Uses(FloorSource::kLidar) && lidar_.HasRanges()) {
+  if (Uses(FloorSource::kLidar) && lidar_.HasRanges() && MayHaveRidden()) {
     return FinishByClimbs(FloorSource::kLidar, lidar_.FindRides(track_));
   }
   if (options_.source != FloorSource::kAuto) {

@@ -108,6 +108,7 @@ inline BuildingMap SampleMap() {
     pose.node_before = i / 2;
     pose.T_world_robot = poses[i / 2];
     pose.T_odom_robot = poses[i / 2];
+    pose.log_stamp = pose.stamp;
     map.trajectory.push_back(pose);
     map.kept_scans.push_back({static_cast<std::size_t>(i), ScanOfRoom(pose.stamp)});
   }

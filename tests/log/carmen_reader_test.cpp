@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/carmen_reader.hpp"
+#include "masked_mapper/log/log_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Content {
 
 Content ReadAll(const std::string& path, const LogOptions& options = {}) {
   Content content;
-  const std::unique_ptr<LogReader> reader = OpenCarmenLog(path, options);
+  const std::unique_ptr<LogReader> reader = OpenLog(path, options);
   double last_stamp = -1e300;
   while (std::optional<Observation> observation = reader->Next()) {
     EXPECT_GE(Stamp(*observation), last_stamp);
@@ -250,7 +250,7 @@ TEST(CarmenReaderTest, AReaderMayBeLeftInTheMiddle) {
   for (int i = 0; i < 5000; ++i) text += Flaser(i);
   const TemporaryFile file(".log", text);
   for (int i = 0; i < 5; ++i) {
-    const std::unique_ptr<LogReader> reader = OpenCarmenLog(file.path(), {});
+    const std::unique_ptr<LogReader> reader = OpenLog(file.path(), {});
     for (int k = 0; k < i * 100; ++k) ASSERT_TRUE(reader->Next());
     EXPECT_LT(reader->Progress(), 1.0);
   }

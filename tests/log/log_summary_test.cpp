@@ -12,6 +12,11 @@
 namespace masked_mapper {
 namespace {
 
+LogSummary SummaryOf(const std::string& path) {
+  LogSource source(path, {});
+  return Summarise(source);
+}
+
 TEST(SummariseTest, SaysWhatAPersonCanCount) {
   const TemporaryFile file(".log");
   LogWriter writer(file.path());
@@ -28,7 +33,7 @@ TEST(SummariseTest, SaysWhatAPersonCanCount) {
     writer.Write(scan);
   }
   writer.Close();
-  const LogSummary summary = Summarise(file.path(), {});
+  const LogSummary summary = SummaryOf(file.path());
   EXPECT_EQ(summary.statistics.scans, 101U);
   EXPECT_NEAR(summary.duration_s, 23.0, 1e-6);
   EXPECT_NEAR(summary.path_length_m, 10.0, 1e-4);
@@ -47,7 +52,7 @@ TEST(SummariseTest, SaysWhatAPersonCanCount) {
 
 TEST(SummariseTest, AnEmptyLogIsAllZeros) {
   const TemporaryFile file(".log", "# nothing\n");
-  const LogSummary summary = Summarise(file.path(), {});
+  const LogSummary summary = SummaryOf(file.path());
   EXPECT_EQ(summary.statistics.scans, 0U);
   EXPECT_FALSE(summary.has_odometry);
   EXPECT_EQ(summary.range_quantiles_m[2], 0.0);
@@ -59,7 +64,7 @@ TEST(SummariseTest, PathsOfRealLogs) {
            {"aces", 325.0}, {"fr079", 392.0}, {"mit-csail", 374.0}, {"malaga-telecom", 76.0}}) {
     const std::string path = std::string(MASKED_MAPPER_REAL_LOGS) + "/data/" + name + ".clf.gz";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-    EXPECT_NEAR(Summarise(path, {}).path_length_m, length, 1.0) << name;
+    EXPECT_NEAR(SummaryOf(path).path_length_m, length, 1.0) << name;
   }
 }
 

@@ -59,6 +59,19 @@ TEST(OdometryAtScansTest, OdometryThatTheScanHasIsKept) {
   EXPECT_EQ(std::get<LaserScan>(result[1]).T_odom_robot->x, 7.0);
 }
 
+TEST(OdometryAtScansTest, WithoutScansNoReadingIsKeptForEver) {
+  OdometryAtScans at_scans;
+  for (int i = 0; i < 5000; ++i) {
+    at_scans.Add(Odometry(0.01 * i), 0);
+    while (at_scans.Next()) {
+    }
+  }
+  EXPECT_LE(at_scans.readings_kept(), 1U);
+  at_scans.Add(Scan(50.0), 0);
+  at_scans.Finish();
+  EXPECT_TRUE(std::get<LaserScan>(at_scans.Next()->first).T_odom_robot) << "held briefly";
+}
+
 TEST(OdometryAtScansTest, WithoutOdometryNothingIsHeldBackForEver) {
   OdometryAtScans at_scans;
   int out = 0;

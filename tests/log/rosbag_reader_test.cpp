@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/rosbag_reader.hpp"
+#include "masked_mapper/log/log_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,6 +16,11 @@ std::string TemporaryLog(const std::string& name) {
   return (std::filesystem::path(testing::TempDir()) / name).string();
 }
 
+LogSurvey Survey(const std::string& path, const MappingOptions& options) {
+  LogSource source(path, options.log);
+  return SurveyLog(source, options);
+}
+
 LaserScan ScanAt(double stamp, double x) {
   LaserScan scan;
   scan.stamp = stamp;
@@ -32,7 +37,7 @@ TEST(SurveyLog, CountsScansAndTheirSteps) {
   LogWriter writer(path);
   for (int i = 0; i < 20; ++i) writer.Write(ScanAt(0.2 * i, 0.1 * i));
   writer.Close();
-  const LogSurvey survey = SurveyLog(path, {});
+  const LogSurvey survey = Survey(path, {});
   EXPECT_EQ(survey.scans, 20U);
   EXPECT_TRUE(survey.has_odometry);
   EXPECT_NEAR(survey.median_travel_m, 0.1, 1e-3);
@@ -65,7 +70,7 @@ TEST(SurveyLog, OdometryThatNeverMovesIsNone) {
   LogWriter writer(path);
   for (int i = 0; i < 20; ++i) writer.Write(ScanAt(0.2 * i, 3.0));
   writer.Close();
-  const LogSurvey survey = SurveyLog(path, {});
+  const LogSurvey survey = Survey(path, {});
   EXPECT_TRUE(survey.has_odometry);
   EXPECT_FALSE(survey.odometry_moves);
   EXPECT_EQ(SettleMotionSource(path, {}, survey), MotionSource::kScans);
@@ -76,7 +81,7 @@ TEST(SurveyLog, OdometryThatNeverMovesIsNone) {
 TEST(SurveyLog, WithoutAScanThereIsNothingToMap) {
   const std::string path = TemporaryLog("no_scan.log");
   std::ofstream(path) << "# CARMEN\nODOM 0 0 0 0 0 0 1.0 host 1.0\n";
-  EXPECT_THROW(SurveyLog(path, {}), InputError);
+  EXPECT_THROW(Survey(path, {}), InputError);
 }
 
 TEST(SurveyLog, FloorsOfAFileStandForThoseOfTheLog) {
@@ -89,7 +94,7 @@ TEST(SurveyLog, FloorsOfAFileStandForThoseOfTheLog) {
   options.floors.file = file;
 
   std::ofstream(file) << "t,label\n9,EG\n14,-\n15,OG\n";
-  const LogSurvey survey = SurveyLog(path, options);
+  const LogSurvey survey = Survey(path, options);
   EXPECT_EQ(survey.floor_source, FloorSource::kLabels);
   ASSERT_EQ(survey.floors.levels.size(), 2U);
   EXPECT_EQ(survey.floors.levels[0].label, "EG");
@@ -98,13 +103,13 @@ TEST(SurveyLog, FloorsOfAFileStandForThoseOfTheLog) {
   EXPECT_EQ(survey.floors.At(15.1).level, 1U);
 
   std::ofstream(file) << "0,EG\n";  // one label may stand for the whole log
-  EXPECT_EQ(SurveyLog(path, options).floors.levels.front().label, "EG");
+  EXPECT_EQ(Survey(path, options).floors.levels.front().label, "EG");
   for (const char* wrong : {"0,EG\n5,OG\n", "1000,EG\n1005,OG\n", "9,../x\n", "14,-\n", ""}) {
     std::ofstream(file) << wrong;
-    EXPECT_THROW(SurveyLog(path, options), InputError) << wrong;
+    EXPECT_THROW(Survey(path, options), InputError) << wrong;
   }
   options.floors.file = TemporaryLog("floors.missing");
-  EXPECT_THROW(SurveyLog(path, options), InputError);
+  EXPECT_THROW(Survey(path, options), InputError);
 }
 
 }  // namespace

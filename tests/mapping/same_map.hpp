@@ -33,6 +33,7 @@ class MapBytes {
     for (const Closure& closure : map.closures) AddClosure(closure);
     for (const TrajectoryPose& pose : map.trajectory) {
       AddNumber("trajectory", pose.stamp);
+      AddNumber("trajectory", pose.log_stamp);
       AddNumber("trajectory", pose.floor);
       AddNumber("trajectory", pose.in_transit);
       AddNumber("trajectory", pose.node_before);

@@ -154,31 +154,19 @@ TEST(FloorTracker, ZeroPressureIsSaidAndLeftOut) {
   EXPECT_EQ(tracker.source(), FloorSource::kNone);
 }
 
-TEST(FloorTracker, AsksForRangesOnlyWhereTheyWouldTell) {
-  const SyntheticDrive drive = UpAndDown();
-  FloorTracker bare{FloorOptions{}};
-  EXPECT_FALSE(bare.NeedsRanges());
-  LaserScan scan;
-  scan.ranges.clear();
-  bare.Observe(scan);
-  ObserveWheels(drive, &bare);
-  EXPECT_TRUE(bare.NeedsRanges());
-  for (const PressureReading& reading : SyntheticBarometer{}.Read(drive, 1)) bare.Observe(reading);
-  EXPECT_FALSE(bare.NeedsRanges()) << "pressure tells more";
-
-  FloorTracker labelled{FloorOptions{}};
-  labelled.Observe(scan);
-  ObserveWheels(drive, &labelled);
-  labelled.Observe(FloorLabel{0.0, "0"});
-  EXPECT_FALSE(labelled.NeedsRanges());
-
+TEST(FloorTracker, NoElevatorMovesADrivingRobot) {
+  LaserScan cab;
+  cab.angle_step = 2.0 * kPi / 100.0;
+  cab.max_range = 30.0F;
+  cab.ranges.assign(100, 0.8F);
   FloorTracker restless{FloorOptions{}};
-  restless.Observe(scan);
-  for (int i = 0; i < 1000; ++i) restless.Observe(OdometryReading{0.2 * i, {0.1 * i, 0.0, 0.0}});
-  EXPECT_FALSE(restless.NeedsRanges()) << "no elevator moves a driving robot";
-  scan.ranges.assign(100, 5.0F);
-  labelled.Observe(scan);
-  EXPECT_FALSE(labelled.NeedsRanges());
+  for (int i = 0; i < 1000; ++i) {
+    restless.Observe(OdometryReading{0.2 * i, {0.1 * i, 0.0, 0.0}});
+    cab.stamp = 0.2 * i;
+    restless.Observe(cab);
+  }
+  EXPECT_EQ(restless.Finish().levels.size(), 1U);
+  EXPECT_EQ(restless.source(), FloorSource::kNone);
 }
 
 TEST(FloorTracker, TakesAccelerationWhereThereIsNoPressure) {

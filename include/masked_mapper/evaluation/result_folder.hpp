@@ -32,22 +32,30 @@ struct ValidatedClosure {
   Pose2 T_a_b;
 };
 
-/// The graph's nodes in order of time: node i and i + 1 are tied by odometry or a floor change.
+/// The graph's nodes in order of driving: node i and i + 1 are tied by odometry or a floor change.
 struct MappedGraph {
-  std::vector<StampedPose> nodes;
-  std::vector<GraphEdge> edges;  ///< all of graph.g2o
+  std::vector<StampedPose> nodes;  ///< their stamps never step back
+  std::vector<double> log_stamps;  ///< s, the same as the log gives them to the nodes' scans
+  std::vector<GraphEdge> edges;    ///< all of graph.g2o
 };
 
 /// One log's part of a map of several; scans and nodes of drives follow each other.
 struct MappedDrive {
   std::size_t scans = 0;
   std::size_t nodes = 0;
-  double stamp_offset = 0.0;  ///< s, was added to the log's stamps
+  double stamp_offset = 0.0;  ///< s, was added to the log's stamps for those of nodes
   std::vector<std::string> floors;
 };
 
+/// One line of trajectory.tum.
+struct MappedScan {
+  StampedPose pose;    ///< with the log's own stamp
+  double stamp = 0.0;  ///< s, that nodes and closures go by; never steps back
+};
+
 struct ResultFolder {
-  std::vector<StampedPose> trajectory;                    ///< in order of stamps
+  std::vector<MappedScan> scans;                          ///< in order of driving
+  std::vector<StampedPose> trajectory;                    ///< the same in order of the log's stamps
   std::optional<MappedGraph> graph;                       ///< of nodes.tum and graph.g2o
   std::optional<std::vector<ValidatedClosure>> closures;  ///< of closures.csv, when `graph` is
   std::vector<MappedFloor> floors;                        ///< of summary.json

@@ -38,8 +38,8 @@ std::optional<StampedPose> CarriedTruePoseAt(const Truth& truth,
                                              const std::vector<StampedPose>& trajectory,
                                              double stamp);
 
-/// The same for each node.
-std::vector<std::optional<StampedPose>> TruePosesOf(const std::vector<StampedPose>& nodes,
+/// The same at each of the log's stamps of the nodes.
+std::vector<std::optional<StampedPose>> TruePosesOf(const std::vector<double>& log_stamps,
                                                     const Truth& truth,
                                                     const std::vector<StampedPose>& trajectory);
 

@@ -55,7 +55,11 @@ struct Summary {
   StageSeconds seconds;
   double peak_memory_mib = 0.0;
   std::vector<std::string> warnings;
-  std::vector<Doubt> doubts;       ///< empty: the map holds together
+  std::vector<Doubt> doubts;  ///< empty: the map holds together
+  std::vector<SensorFinding> findings;
+  /// Place in the trajectory and stamp of the scans whose stamp is not their log's own, but for the
+  /// shift of their drive: the motion, nodes and closures go by it.
+  std::vector<std::pair<std::uint64_t, double>> mended_stamps;
   std::vector<DriveFacts> drives;  ///< of a map of several logs; else none
 };
 

@@ -29,6 +29,7 @@ class BagFile final : public RosBag {
   void Rewind() override;
   const std::map<std::uint32_t, BagConnection>& Connections() const override;
   bool IsIndexed() const override;
+  std::optional<double> EndTime() const override;
   bool Truncated() const override;
   std::uint64_t Damaged() const override;
   double Progress() const override;

@@ -19,6 +19,8 @@ class FrameTree {
   void Add(const std::string& parent, const std::string& child,
            const Eigen::Isometry3d& T_parent_child);
 
+  /// m, the farthest that a frame was seen from where it first was under its parent.
+  double Travel(const std::string& child) const;
   bool Knows(const std::string& frame) const;
   /// The frame and all above it, upwards; never endless.
   std::vector<std::string> Ancestors(const std::string& frame) const;
@@ -29,6 +31,7 @@ class FrameTree {
   struct Link {
     std::string parent;
     Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+    double travel = 0.0;  ///< m
   };
   std::map<std::string, Link> links_;  ///< by child
 };

@@ -20,7 +20,7 @@ struct LogOptions {
   double laser_theta_deg = 0.0;    ///< deg
   bool upside_down = false;        ///< the scanner hangs: beams run the other way than the log says
   double field_of_view_deg = 0.0;  ///< deg, of FLASER; 0: by PARAM, else by the number of beams
-  bool read_ranges = true;         ///< false: scans come without beams (a first look at a long log)
+  bool read_ranges = true;         ///< false: scans come without beams
 
   // Of ROS bags. Empty: the only topic of its type; `none`: not to be read.
   std::string scan_topic;      ///< several, separated by commas, are merged into one virtual scan
@@ -63,9 +63,8 @@ class LogReader {
   virtual double Progress() const = 0;
 };
 
-/// Opens a log by its content (CARMEN text, plain or gzip; ROS 1 or ROS 2 bag).
-/// Throws InputError when it cannot be read as a log at all: no such file, a directory, empty,
-/// binary.
+/// One pass through a log that is told by its content (CARMEN text, plain or gzip; ROS 1 or ROS 2
+/// bag). Who reads it more than once opens a LogSource. Throws InputError as that does.
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogOptions& options);
 
 }  // namespace masked_mapper

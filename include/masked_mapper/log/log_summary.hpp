@@ -6,14 +6,16 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "masked_mapper/geometry/pose2.hpp"
-#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/log_source.hpp"
 
 namespace masked_mapper {
 
 struct LogSummary {
   LogStatistics statistics;
+  std::vector<SensorFinding> findings;
   double duration_s = 0.0;
   double path_length_m =
       0.0;                  ///< by the odometry of the scans; of the ODOM lines if scans have none
@@ -41,7 +43,7 @@ struct LogSummary {
   std::uint64_t stamps_out_of_order = 0;  ///< late messages and mended stamps
 };
 
-/// Reads the log once from end to end. Throws InputError as OpenLog does.
-LogSummary Summarise(const std::string& path, const LogOptions& options);
+/// Reads the log from end to end; once more when all of it says otherwise than its beginning.
+LogSummary Summarise(LogSource& source);
 
 }  // namespace masked_mapper

@@ -18,6 +18,8 @@ class OdometryAtScans {
   void Add(Observation observation, std::size_t stream);
   /// No more will come.
   void Finish() { finished_ = true; }
+  /// Kept for scans that may come; bounded, also where none does.
+  std::size_t readings_kept() const { return readings_.size(); }
   /// The next observation, in the order in which they were added.
   std::optional<std::pair<Observation, std::size_t>> Next();
 
@@ -25,6 +27,7 @@ class OdometryAtScans {
   bool Complete(LaserScan* scan);
 
   std::deque<std::pair<Observation, std::size_t>> waiting_;
+  std::size_t scans_waiting_ = 0;
   std::deque<OdometryReading> readings_;  ///< the last before the first waiting scan, and all after
   double newest_ = 0.0;                   ///< s
   bool finished_ = false;

@@ -39,6 +39,8 @@ class RosBag {
   virtual const std::map<std::uint32_t, BagConnection>& Connections() const = 0;
   /// Whether the bag lists its connections: of ROS 1, it was closed properly.
   virtual bool IsIndexed() const = 0;
+  /// s, of recording, of the last message, where the bag tells it without being read.
+  virtual std::optional<double> EndTime() const { return std::nullopt; }
   /// The recording was not closed properly, or the file ends before its records do.
   virtual bool Truncated() const = 0;
   /// Records and chunks skipped because they make no sense.

@@ -11,13 +11,15 @@
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/sensor/motion_source.hpp"
+#include "masked_mapper/sensor/sensor_finding.hpp"
 
 namespace masked_mapper {
 
 /// The pose of one scan of the log.
 struct TrajectoryPose {
-  double stamp = 0.0;  ///< s
-  FloorId floor = 0;   ///< in transit: the floor left last
+  double stamp = 0.0;      ///< s, never decreasing
+  double log_stamp = 0.0;  ///< s, as the log gives it to the scan
+  FloorId floor = 0;       ///< in transit: the floor left last
   bool in_transit = false;
   NodeId node_before = 0;  ///< the last node made at or before this scan
   Pose2 T_odom_robot;      ///< along the motion path
@@ -64,7 +66,8 @@ struct BuildingMap {
   LogStatistics log;
   MotionSource motion_source = MotionSource::kFused;  ///< that of the first drive
   StageSeconds seconds;
-  std::vector<std::string> warnings;  ///< one line each, for people
+  std::vector<SensorFinding> findings;  ///< what the logs' own data say of their sensors
+  std::vector<std::string> warnings;    ///< one line each, for people
 };
 
 }  // namespace masked_mapper

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A first, cheap pass over a log: what it holds, and what must be known before the first scan is
-// mapped.
+// A first pass over a log: what it holds, and what must be known before the first scan is mapped.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
@@ -23,12 +23,14 @@ struct LogSurvey {
   double median_period_s = 0.0;
   FloorTimeline floors;
   FloorSource floor_source = FloorSource::kNone;  ///< what the floors were found by
+  std::vector<SensorFinding> findings;
+  bool reconsidered = false;  ///< all of the log said otherwise of its sensors than its beginning
   std::vector<std::string> warnings;
 };
 
 /// Throws InputError when the log cannot be read or holds no scan, or its file of floors is not one
 /// of this log.
-LogSurvey SurveyLog(const std::string& path, const MappingOptions& options);
+LogSurvey SurveyLog(LogSource& source, const MappingOptions& options);
 
 /// What `options.source` comes to for this log. Throws InputError when wheels are asked for and the
 /// log has none; `path` is for the message.

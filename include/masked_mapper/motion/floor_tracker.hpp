@@ -49,11 +49,6 @@ class FloorTracker {
   /// Observations in order of stamps. Throws InputError for a label that may not be one.
   void Observe(const Observation& observation);
 
-  /// Whether the log, of which scans came without ranges, holds nothing that tells floors apart but
-  /// those ranges, and the robot stood still long enough for a ride at least once. If so, observe
-  /// the log once more, scans with ranges; nothing else of it is looked at again.
-  bool NeedsRanges() const;
-
   /// All levels and intervals, once the whole log was observed. Clears warnings of before.
   FloorTimeline Finish();
   /// What Finish() went by; not kAuto.
@@ -68,6 +63,8 @@ class FloorTracker {
 
   FloorTimeline FinishByClimbs(FloorSource source, const std::vector<FloorTransit>& transits);
   bool HasLabels() const;
+  /// Whether the robot stood still long enough for a ride at least once, as far as wheels tell.
+  bool MayHaveRidden() const;
 
   FloorOptions options_;
   bool labels_are_given_ = false;

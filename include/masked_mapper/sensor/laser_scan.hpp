@@ -23,6 +23,7 @@ constexpr float kInvalidRange = std::numeric_limits<float>::quiet_NaN();
 
 struct LaserScan {
   double stamp = 0.0;                 ///< s, never decreasing within a log as a reader hands it out
+  double log_stamp = 0.0;             ///< s, as the log has it, which may step back
   Pose2 T_robot_laser;                ///< pose of the scanner on the robot
   double first_angle = 0.0;           ///< rad, direction of beam 0 in the laser frame
   double angle_step = 0.0;            ///< rad, counter-clockwise positive; negative when mirrored

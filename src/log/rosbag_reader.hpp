@@ -11,13 +11,15 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "masked_mapper/log/log_reader.hpp"
+#include "log_plan.hpp"
 
 namespace masked_mapper {
 
-/// Throws InputError: not a bag of version 2.0 or of ROS 2 (.db3), no scan in it, several topics to
-/// choose from, a topic that is not there.
-std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions& options);
+/// Looks at the beginning of a bag, or of several that are one recording. Throws InputError: not a
+/// bag that is read, no scan in it, several topics to choose from, a topic that is not there.
+std::unique_ptr<LogPlan> PlanRosBag(const std::vector<std::string>& paths,
+                                    const LogOptions& options);
 
 }  // namespace masked_mapper

@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 
-#include "masked_mapper/log/log_reader.hpp"
+#include "log_plan.hpp"
 
 namespace masked_mapper {
 
-/// Looks at the beginning of the log (at all of it when the beginning does not tell what "no
-/// return" is), then reads it from the start. Throws InputError as OpenLog does.
-std::unique_ptr<LogReader> OpenCarmenLog(const std::string& path, const LogOptions& options);
+/// Looks at the beginning of the log, at all of it when the beginning does not tell what "no
+/// return" is. Throws InputError: no such file, a folder, empty, binary.
+std::unique_ptr<LogPlan> PlanCarmenLog(const std::string& path, const LogOptions& options);
 
 }  // namespace masked_mapper

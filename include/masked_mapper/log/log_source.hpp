@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot's log that is opened and planned once, and then read pass after pass: to survey it, to
+// map it. What a first look must settle (topics, mounts, clocks, the limit of the ranges) is
+// settled once; a stream that can be read but once is kept in a temporary file.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/sensor/sensor_finding.hpp"
+
+namespace masked_mapper {
+
+class LogPlan;
+class Spool;
+
+class LogSource {
+ public:
+  /// `-` is standard input. Throws InputError when it cannot be read as a log at all: no such file,
+  /// empty, binary, a bag without a scan.
+  LogSource(const std::string& path, const LogOptions& options);
+  /// Bags of one recording, in its order (recordings.hpp).
+  LogSource(const std::vector<std::string>& paths, const LogOptions& options);
+  ~LogSource();
+  LogSource(const LogSource&) = delete;
+  LogSource& operator=(const LogSource&) = delete;
+
+  /// As it was given; of several, the first.
+  const std::string& path() const { return path_; }
+  /// Whether it can be read but once, and is gone when the program ends.
+  bool is_stream() const { return spool_ != nullptr; }
+
+  /// A pass from the beginning. May outlive the source.
+  std::unique_ptr<LogReader> Read() const;
+
+  /// To be called behind the first pass, read to its end. True when all of the log says otherwise
+  /// of its sensors than its beginning did: what was read is to be read again.
+  bool Reconsider();
+  /// What the log says of its own sensors, as far as it was read.
+  std::vector<SensorFinding> Findings() const;
+
+ private:
+  std::string path_;
+  std::shared_ptr<Spool> spool_;
+  std::unique_ptr<LogPlan> plan_;
+};
+
+}  // namespace masked_mapper

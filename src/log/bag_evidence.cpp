@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "masked_mapper/geometry/angle.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::size_t kScansForLimit = 300;
+constexpr std::size_t kScansForClock = 50;
+constexpr std::size_t kMostFrames = 16;  // of one topic
+constexpr double kOutOfOrder = 5.0;      // s; what comes less late is put in order in passing
+constexpr double kTravels = 0.3;         // m, of a link that odometry moves
+
+/// Frames above odometry's: what moves in them is put right by a map, and jumps.
+bool IsGlobalFrame(const std::string& frame) {
+  static const std::set<std::string> global = {"map", "world", "earth"};
+  return global.count(LastPartOfFrame(frame)) > 0;
+}
+
+}  // namespace
+
+BagEvidence::BagEvidence(const LogOptions& options, const BagPlan& topics)
+    : options_(options),
+      topics_(topics),
+      clocks_(topics.topics.size()),
+      scanners_(topics.scanners) {}
+
+void BagEvidence::Note(std::size_t stream, double time, double header) {
+  clocks_[stream].Add(header, time);
+  if (!has_time_) first_time_ = newest_time_ = time;
+  has_time_ = true;
+  is_disordered_ = is_disordered_ || time < newest_time_ - kOutOfOrder;
+  newest_time_ = std::max(newest_time_, time);
+  first_time_ = std::min(first_time_, time);
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan) {
+  Note(stream, time, scan.header.stamp);
+  ++scans_;
+  auto& frames = scanners_[topics_.topics[stream].scanner];
+  if (frames.size() < kMostFrames || frames.count(scan.header.frame_id) > 0) {
+    frames[scan.header.frame_id].Add(scan, options_.min_range);
+  }
+  if (IsRangeLimit(scan.range_max)) {
+    max_range_ = std::max(max_range_, scan.range_max);
+  } else {
+    limit_is_stated_ = false;
+  }
+  if (!limit_is_stated_) ranges_.Add(scan.ranges, scan.angle_increment, {});
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosOdometry& odometry) {
+  Note(stream, time, odometry.header.stamp);
+  if (!child_frame_) child_frame_ = odometry.child_frame_id;
+}
+
+void BagEvidence::Add(std::size_t stream, double time,
+                      const std::vector<RosTransform>& transforms) {
+  // One topic holds the transforms of many sources, each with a clock of its own.
+  Note(stream, time, 0.0);
+  for (const RosTransform& transform : transforms) {
+    frames_.Add(transform.header.frame_id, transform.child_frame_id, transform.T_frame_child);
+  }
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosImu& imu) {
+  Note(stream, time, imu.header.stamp);
+  imu_frame_ = imu.header.frame_id;
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosFluidPressure& pressure) {
+  Note(stream, time, pressure.header.stamp);
+}
+
+std::optional<std::size_t> BagEvidence::SilentScanner() const {
+  for (std::size_t scanner = 0; scanner < scanners_.size(); ++scanner) {
+    if (scanners_[scanner].empty()) return scanner;
+  }
+  return std::nullopt;
+}
+
+bool BagEvidence::IsEnough() const {
+  if (SilentScanner()) return false;
+  if (topics_.has_odometry_topic && !child_frame_) return false;
+  if (scans_ < (limit_is_stated_ ? kScansForClock : kScansForLimit)) return false;
+  bool has_tf = false;
+  for (std::size_t i = 0; i < topics_.topics.size(); ++i) {
+    const TopicKind kind = topics_.topics[i].kind;
+    has_tf = has_tf || kind == TopicKind::kTransforms;
+    if ((kind == TopicKind::kImu || kind == TopicKind::kPressure) && clocks_[i].IsEmpty()) {
+      return false;
+    }
+  }
+  if (!has_tf) return true;
+  for (std::size_t scanner = 0; scanner < scanners_.size(); ++scanner) {
+    const std::string frame = FrameOf(scanner);
+    const bool hangs = topics_.has_odometry_topic ? frames_.Find(*child_frame_, frame).has_value()
+                                                  : OdometryLink(frame).has_value();
+    if (!hangs) return false;
+  }
+  return true;
+}
+
+std::string BagEvidence::FrameOf(std::size_t scanner) const {
+  const auto& frames = scanners_[scanner];
+  const auto better = [](const auto& a, const auto& b) {
+    return std::make_pair(a.second.HasReturns(), a.second.scans()) <
+           std::make_pair(b.second.HasReturns(), b.second.scans());
+  };
+  return std::max_element(frames.begin(), frames.end(), better)->first;
+}
+
+const ScannerEvidence& BagEvidence::EvidenceOf(std::size_t scanner) const {
+  return scanners_[scanner].at(FrameOf(scanner));
+}
+
+/// Parent and child of the link above a frame that odometry moves: the one of that name, else the
+/// lowest that travels.
+std::optional<std::pair<std::string, std::string>> BagEvidence::OdometryLink(
+    const std::string& frame) const {
+  const std::vector<std::string> chain = frames_.Ancestors(frame);
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    if (LastPartOfFrame(chain[i]) == "odom") return std::make_pair(chain[i], chain[i - 1]);
+  }
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    if (frames_.Travel(chain[i - 1]) < kTravels) continue;
+    if (IsGlobalFrame(chain[i])) return std::nullopt;
+    return std::make_pair(chain[i], chain[i - 1]);
+  }
+  return std::nullopt;
+}
+
+std::string BagEvidence::RobotFrame(const std::string& scan_frame, BagPlan* plan) const {
+  if (plan->has_odometry_topic) {
+    if (child_frame_ && frames_.Find(*child_frame_, scan_frame)) return *child_frame_;
+  } else if (const auto link = OdometryLink(scan_frame);
+             link && options_.odometry_topic != "none") {
+    plan->odometry_frame = link->first;
+    return link->second;
+  }
+  const std::vector<std::string> chain = frames_.Ancestors(scan_frame);
+  for (const char* usual : {"base_link", "base_footprint"}) {
+    for (const std::string& frame : chain) {
+      if (LastPartOfFrame(frame) == usual) return frame;
+    }
+  }
+  return scan_frame;
+}
+
+BagPlan BagEvidence::Conclude() const {
+  BagPlan plan = topics_;
+  for (std::size_t i = 0; i < clocks_.size(); ++i) plan.clocks[i] = clocks_[i].Find();
+  plan.clock_offset = plan.clocks.front().offset.value_or(0.0);
+  for (std::size_t scanner = 0; scanner < plan.scanners; ++scanner) {
+    if (scanners_[scanner].size() > 1) plan.topics[scanner].frame = FrameOf(scanner);
+    plan.ranges[scanner] = EvidenceOf(scanner).Find();
+  }
+  plan.is_disordered = is_disordered_;
+  plan.robot_frame = RobotFrame(FrameOf(0), &plan);
+  SetMounts(&plan);
+  SetLimit(&plan);
+  return plan;
+}
+
+void BagEvidence::SetMounts(BagPlan* plan) const {
+  for (std::size_t scanner = 0; scanner < plan->scanners; ++scanner) {
+    const auto T_robot_laser = frames_.Find(plan->robot_frame, FrameOf(scanner));
+    if (T_robot_laser) plan->mounts[scanner] = SeenFromAbove(*T_robot_laser);
+  }
+  const bool given =
+      options_.laser_x != 0.0 || options_.laser_y != 0.0 || options_.laser_theta_deg != 0.0;
+  if (given && plan->scanners == 1) {
+    plan->mounts[0].T_robot_laser = {options_.laser_x, options_.laser_y,
+                                     WrapAngle(DegToRad(options_.laser_theta_deg))};
+  }
+  if (const auto T_robot_imu = frames_.Find(plan->robot_frame, imu_frame_)) {
+    plan->R_robot_imu = T_robot_imu->linear();
+  }
+}
+
+void BagEvidence::SetLimit(BagPlan* plan) const {
+  plan->max_range = max_range_;
+  if (options_.max_range > 0.0) {
+    plan->max_range = options_.max_range;
+    plan->no_return = static_cast<float>(options_.max_range);
+  } else if (!limit_is_stated_) {
+    // Only the beginning was looked at: what is farther later is still a return.
+    const std::optional<RangeLimitFinder::Finding> finding = ranges_.Find();
+    constexpr double kFarEnough = 100.0;  // m
+    plan->max_range = finding && IsRangeLimit(finding->far_value)
+                          ? finding->far_value
+                          : std::max<double>(kFarEnough, ranges_.Farthest());
+    plan->no_return = finding ? finding->no_return : static_cast<float>(plan->max_range);
+    const double scale = plan->ranges.front().scale;
+    if (scale == 1.0) return;
+    plan->max_range = kFarEnough;
+    plan->no_return = static_cast<float>(kFarEnough);
+  }
+}
+
+std::vector<SensorFinding> BagEvidence::Findings(const BagPlan& plan) const {
+  std::vector<SensorFinding> findings;
+  const auto add = [&](const std::string& what, double value, const std::string& consequence) {
+    findings.push_back({what, value, 0.0, first_time_ + plan.clock_offset,
+                        newest_time_ + plan.clock_offset, consequence});
+  };
+  if (plan.is_disordered) {
+    add("messages of the bag that stand later than others recorded seconds after them", 1.0,
+        "all are put in the order of their recording");
+  }
+  for (std::size_t i = 0; i < plan.topics.size(); ++i) {
+    const std::string& name = plan.topics[i].name;
+    const TopicClock& clock = plan.clocks[i];
+    if (!clock.offset || plan.topics[i].kind == TopicKind::kTransforms) continue;
+    const ClockEvidence::Strays strays = clocks_[i].FindStrays(clock);
+    if (std::abs(*clock.offset - plan.clock_offset) > kClocksApart) {
+      add("clock of " + name + " against that of " + plan.topics.front().name + ", s",
+          *clock.offset - plan.clock_offset, "its readings are stamped by their recording");
+    } else if (clock.whole_seconds) {
+      add("stamps of " + name + " in whole seconds, s", 1.0,
+          "its readings are stamped by their recording");
+    } else if (clock.is_steady && strays.share > 0.0) {
+      findings.push_back({"share of the stamps of " + name + " by another clock", strays.share, 0.0,
+                          strays.first + *clock.offset, strays.last + *clock.offset,
+                          "those readings are stamped by their recording"});
+    }
+  }
+  for (std::size_t scanner = 0; scanner < plan.scanners; ++scanner) {
+    const std::string& name = plan.topics[scanner].name;
+    const ScannerEvidence& evidence = EvidenceOf(scanner);
+    if (!plan.topics[scanner].frame.empty()) {
+      std::string others;
+      double left_out = 0.0;
+      for (const auto& [frame, other] : scanners_[scanner]) {
+        if (frame == plan.topics[scanner].frame) continue;
+        others += (others.empty() ? "`" : ", `") + frame + "`";
+        left_out += static_cast<double>(other.scans());
+      }
+      add("scans of other frames on " + name, left_out,
+          "those of `" + plan.topics[scanner].frame + "` are taken, those of " + others +
+              " left out");
+    }
+    if (plan.ranges[scanner].scale != 1.0) {
+      add("unit of the ranges of " + name + ", m", plan.ranges[scanner].scale,
+          "they are read as millimetres");
+    } else if (!plan.ranges[scanner].believes_range_min) {
+      add("range_min of " + name + ", m", evidence.range_min(),
+          "nearer ranges see surfaces all the same and are taken");
+    } else if (evidence.ShareWithinLimits() < 0.01) {
+      add("share of the ranges of " + name + " within the limits that it states",
+          evidence.ShareWithinLimits(),
+          "they cannot be read: neither as metres nor as millimetres");
+    }
+  }
+  return findings;
+}
+
+}  // namespace masked_mapper

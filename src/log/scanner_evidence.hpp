@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the ranges of a scanner say of themselves, against what its messages claim of them: drivers
+// are published that give millimetres for metres, or a least range beyond half of the room.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "masked_mapper/log/ros_messages.hpp"
+
+namespace masked_mapper {
+
+struct ScannerRanges {
+  double scale = 1.0;              ///< to metres
+  bool believes_range_min = true;  ///< false: nearer ranges than the messages' least are right
+};
+
+/// Scans of one frame.
+class ScannerEvidence {
+ public:
+  /// `least_range`: m, below which nothing is believed anyway.
+  void Add(const RosLaserScan& scan, double least_range);
+
+  std::uint64_t scans() const { return scans_; }
+  /// Whether any beam ever came back.
+  bool HasReturns() const { return finite_ > 0; }
+  ScannerRanges Find() const;
+  /// Share of the ranges that lie within the limits which their messages state.
+  double ShareWithinLimits() const;
+  double range_min() const { return range_min_; }
+
+ private:
+  double Median() const;
+
+  std::uint64_t scans_ = 0;
+  std::uint64_t finite_ = 0;  ///< ranges that are a number above 0, as all below
+  std::uint64_t within_ = 0;  ///< the limits of their message
+  std::uint64_t near_ = 0;    ///< below range_min, and like their neighbour: a surface, no noise
+  double range_min_ = 0.0;
+  std::array<std::uint64_t, 96> histogram_{};  ///< of the logarithm
+  std::vector<float> nearest_;                 ///< per beam, of what is counted in near_
+  std::vector<float> farthest_;
+};
+
+}  // namespace masked_mapper
