@@ -5,17 +5,13 @@
 
 #include "bag_look.hpp"
 #include "bag_observations.hpp"
-#include "masked_mapper/log/bag_file.hpp"
+#include "bag_without_scans.hpp"
+#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
 namespace {
-
-std::unique_ptr<RosBag> OpenBag(const std::string& path) {
-  if (Ros2BagFile::IsBag(path)) return std::make_unique<Ros2BagFile>(path);
-  return std::make_unique<BagFile>(path);
-}
 
 void ReadBag(const std::string& path, const LogOptions& options, const BagPlan& plan,
              const ReadAhead::Sink& sink) {
@@ -50,8 +46,9 @@ std::unique_ptr<LogReader> OpenRosBag(const std::string& path, const LogOptions&
     }  // the connections are wherever they are
     bag->Rewind();
   }
-  const BagPlan plan =
-      LookAtBag(path, options, ChooseTopics(path, bag->Connections(), options), bag.get());
+  BagPlan plan = ChooseTopics(path, bag->Connections(), options);
+  if (plan.scanners == 0) throw InputError(path + ": " + WhatIsThereInsteadOfScans(bag.get()));
+  plan = LookAtBag(path, options, std::move(plan), bag.get());
   LogStatistics statistics;
   statistics.max_range = plan.max_range;
   return std::make_unique<ReadAhead>(
