@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_map_path.hpp"
 
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -11,8 +11,7 @@ namespace masked_mapper {
 bool IsOutOrMap(const std::string& path) {
   // ROS 2 bags are folders and SQLite files as well.
   if (std::filesystem::is_directory(path)) {
-    return std::filesystem::exists(std::filesystem::path(path) / kMapFileName) ||
-           !Ros2BagFile::IsBag(path);
+    return std::filesystem::exists(std::filesystem::path(path) / kMapFileName) || !IsBag(path);
   }
   if (std::filesystem::path(path).extension() == ".db3") return false;
   return BeginsAsSqlite(path);

@@ -107,7 +107,9 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
   command->add_option("--building", arguments->building, BuildingHelp())
       ->required()
       ->type_name("NAME|FILE");
-  command->add_option("-o,--output", arguments->log, "the log to write; .gz packs it")
+  command
+      ->add_option("-o,--output", arguments->log,
+                   "the log to write: text (.gz packs it), or a bag by its name (.bag, .mcap)")
       ->required()
       ->type_name("LOG");
   command->add_option("--seed", arguments->seed, "of every random number: same seed, same bytes")
@@ -139,6 +141,7 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
       "  masked_mapper simulate --building office -o office.log.gz\n"
       "  masked_mapper simulate --building campus -o campus.log.gz --seed 7 --length 5000\n"
       "  masked_mapper simulate --building campus -o again.log.gz --seed 7 --tour 2\n"
+      "  masked_mapper simulate --building office -o office.mcap\n"
       "\n"
       "Beside LOG (without its .gz) stand LOG.truth.tum, the true pose at every scan, and\n"
       "LOG.truth_floors.csv, the true floor.");

@@ -12,6 +12,7 @@ namespace masked_mapper::fuzz {
 void CarmenLog(const std::uint8_t* data, std::size_t size);
 void RosBag1(const std::uint8_t* data, std::size_t size);
 void RosBag2(const std::uint8_t* data, std::size_t size);
+void Mcap(const std::uint8_t* data, std::size_t size);
 void RosMessages(const std::uint8_t* data, std::size_t size);
 void Configuration(const std::uint8_t* data, std::size_t size);
 /// Of the corpus' one map.

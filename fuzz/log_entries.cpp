@@ -36,6 +36,11 @@ void RosBag2(const std::uint8_t* data, std::size_t size) {
   ReadToTheEnd(file.path());
 }
 
+void Mcap(const std::uint8_t* data, std::size_t size) {
+  const InputFile file(".mcap", data, size);
+  ReadToTheEnd(&OpenRosBag, file.path());
+}
+
 void RosMessages(const std::uint8_t* data, std::size_t size) {
   for (const MessageEncoding encoding : {MessageEncoding::kRos1, MessageEncoding::kCdr}) {
     ParseHeader(data, size, encoding);

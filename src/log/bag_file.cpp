@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/bag_file.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <set>
 #include <string_view>
 #include <vector>
 
-#include "bag_compression.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "record_file.hpp"
+#include "unpacking.hpp"
 
 namespace masked_mapper {
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V";
 constexpr std::string_view kVersionLine = "#ROSBAG V2.0\n";
-// Recorders close a chunk at 768 kB; one message of many megabytes may make it longer.
-constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 constexpr std::uint64_t kLargestConnection = std::uint64_t{4} << 20U;
 constexpr std::size_t kMostConnections = 10000;
 
@@ -33,8 +26,6 @@ enum Op : int {
   kChunkInfo = 0x06,
   kConnection = 0x07,
 };
-
-using Bytes = std::vector<unsigned char>;
 
 /// Seconds and nanoseconds of a field.
 std::optional<double> TimeOf(std::string_view field) {
@@ -48,7 +39,8 @@ std::optional<double> TimeOf(std::string_view field) {
 
 class BagFile::Impl {
  public:
-  explicit Impl(const std::string& path) : path_(path), file_(path) {
+  Impl(const std::string& path, const std::string& shown_name)
+      : name_(shown_name), file_(path, shown_name) {
     CheckVersion();
     first_record_ = file_.position();
     ReadIndex();
@@ -94,9 +86,9 @@ class BagFile::Impl {
     file_.Read(std::min<std::uint64_t>(file_.size(), kVersionLine.size()), &line);
     const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
     if (text == kVersionLine) return;
-    if (text.substr(0, kMagic.size()) != kMagic) throw InputError(path_ + ": is not a ROS bag");
+    if (text.substr(0, kMagic.size()) != kMagic) throw InputError(name_ + ": is not a ROS bag");
     const std::string version(text.substr(kMagic.size(), 3));
-    throw InputError(path_ + ": is a ROS bag of version " + version +
+    throw InputError(name_ + ": is a ROS bag of version " + version +
                      ", which is obsolete; convert it to 2.0 with `rosbag fix`");
   }
 
@@ -106,7 +98,7 @@ class BagFile::Impl {
     std::uint64_t data_size = 0;
     if (!file_.ReadHeader(&header, &data_size) || header.op() != kBagHeader) return;
     if (!header.Find("encryptor").empty()) {
-      throw InputError(path_ + ": is an encrypted ROS bag, which cannot be read");
+      throw InputError(name_ + ": is an encrypted ROS bag, which cannot be read");
     }
     const std::uint64_t index = header.Number("index_pos", 8).value_or(0);
     const std::uint64_t connections = header.Number("conn_count", 4).value_or(0);
@@ -240,11 +232,18 @@ class BagFile::Impl {
       return;
     }
     file_.Read(data_size, &packed_);
-    bool whole = false;
-    if (compression == "bz2") whole = DecompressBz2(packed_, full_size, &chunk_);
-    if (compression == "lz4") whole = DecompressLz4(packed_, full_size, &chunk_);
+    const bool whole = Unpack(compression, full_size);
     if (!whole && !chunk_is_cut_) ++damaged_;
     chunk_is_cut_ = chunk_is_cut_ || !whole;  // counted once
+  }
+
+  bool Unpack(const std::string& compression, std::uint64_t full_size) {
+    if (compression != "bz2" && compression != "lz4") return false;
+    std::unique_ptr<Unpacker>& unpacker = unpackers_[compression];
+    if (!unpacker) {
+      unpacker = MakeUnpacker(compression == "bz2" ? Packing::kBzip2 : Packing::kLz4);
+    }
+    return UnpackAll(unpacker.get(), packed_.data(), packed_.size(), full_size, &chunk_);
   }
 
   bool ReadConnection(const RecordHeader& header, std::uint64_t data_size) {
@@ -277,7 +276,7 @@ class BagFile::Impl {
 
   void Skip(std::uint64_t count) { truncated_ = !file_.Skip(count) || truncated_; }
 
-  std::string path_;
+  std::string name_;
   RecordFile file_;
   std::uint64_t first_record_ = 0;
   std::set<std::uint64_t> chunk_positions_;
@@ -288,23 +287,14 @@ class BagFile::Impl {
   bool truncated_ = false;
   std::uint64_t damaged_ = 0;
   Bytes packed_;
+  std::map<std::string, std::unique_ptr<Unpacker>> unpackers_;  ///< by the name of compression
   Bytes chunk_;
   std::size_t chunk_position_ = 0;
   bool chunk_is_cut_ = false;
 };
 
-bool BagFile::IsBag(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
-  char beginning[kMagic.size()];
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return false;
-  const std::size_t count = std::fread(beginning, 1, sizeof(beginning), file);
-  std::fclose(file);
-  return std::string_view(beginning, count) == kMagic;
-}
-
-BagFile::BagFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+BagFile::BagFile(const std::string& path, const std::string& shown_name)
+    : impl_(std::make_unique<Impl>(path, shown_name)) {}
 BagFile::~BagFile() = default;
 
 std::optional<BagMessage> BagFile::Next() { return impl_->Next(); }

@@ -56,7 +56,7 @@ LogStatistics BagObservations::Statistics() const {
   statistics.truncated = bag_.Truncated();
   statistics.bad_lines += bag_.Damaged();
   if (statistics.first_bad_line.empty() && bag_.Damaged() > 0) {
-    statistics.first_bad_line = "a chunk or record of the bag is damaged";
+    statistics.first_bad_line = bag_.FirstDamage();
   }
   return statistics;
 }

@@ -15,27 +15,6 @@ namespace {
 
 constexpr double kLeastLimit = 1.0;  // m; a range_max below is none
 
-struct MessageType {
-  const char* type;
-  const char* md5sum;  ///< empty: of ROS 2
-  TopicKind kind;
-};
-constexpr MessageType kMessageTypes[] = {
-    {"sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369", TopicKind::kScan},
-    {"sensor_msgs/MultiEchoLaserScan", "6fefb0c6da89d7c8abe4b339f5c2f8fb", TopicKind::kMultiEcho},
-    {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7", TopicKind::kOdometry},
-    {"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
-    {"tf/tfMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
-    {"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2", TopicKind::kImu},
-    {"sensor_msgs/FluidPressure", "804dc5cea1c5306d6a2eb80b9833befe", TopicKind::kPressure},
-    {"sensor_msgs/msg/LaserScan", "", TopicKind::kScan},
-    {"sensor_msgs/msg/MultiEchoLaserScan", "", TopicKind::kMultiEcho},
-    {"nav_msgs/msg/Odometry", "", TopicKind::kOdometry},
-    {"tf2_msgs/msg/TFMessage", "", TopicKind::kTransforms},
-    {"sensor_msgs/msg/Imu", "", TopicKind::kImu},
-    {"sensor_msgs/msg/FluidPressure", "", TopicKind::kPressure},
-};
-
 std::string Listed(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -62,7 +41,6 @@ class TopicChoice {
   TopicChoice(const std::string& path, const std::map<std::uint32_t, BagConnection>& connections)
       : path_(path) {
     for (const auto& [id, connection] : connections) {
-      all_.insert(connection.topic);
       const std::optional<TopicKind> kind = KindOf(connection);
       if (kind) kinds_.emplace(connection.topic, *kind);
     }
@@ -74,10 +52,7 @@ class TopicChoice {
                                         "log.scan_topic", options.scan_topic)) {
       plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
-    if (plan.scanners == 0) {
-      throw InputError(path_ + ": holds no sensor_msgs/LaserScan (topics: " +
-                       (all_.empty() ? "none" : Listed({all_.begin(), all_.end()})) + ")");
-    }
+    if (plan.scanners == 0) return plan;
     AddOne({TopicKind::kOdometry}, "odometry", "log.odometry_topic", options.odometry_topic, &plan);
     plan.has_odometry_topic = plan.topics.size() > plan.scanners;
     AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
@@ -129,18 +104,10 @@ class TopicChoice {
   }
 
   std::string path_;
-  std::set<std::string> all_;
   std::map<std::string, TopicKind> kinds_;
 };
 
 }  // namespace
-
-std::optional<TopicKind> KindOf(const BagConnection& connection) {
-  for (const MessageType& known : kMessageTypes) {
-    if (connection.type == known.type && connection.md5sum == known.md5sum) return known.kind;
-  }
-  return std::nullopt;
-}
 
 BagPlan ChooseTopics(const std::string& path,
                      const std::map<std::uint32_t, BagConnection>& connections,

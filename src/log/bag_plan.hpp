@@ -17,14 +17,10 @@
 #include "masked_mapper/log/frame_tree.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
+#include "ros_types.hpp"
 #include "scanner_evidence.hpp"
 
 namespace masked_mapper {
-
-enum class TopicKind { kScan, kMultiEcho, kOdometry, kTransforms, kImu, kPressure };
-
-/// Empty: of a type that is not read.
-std::optional<TopicKind> KindOf(const BagConnection& connection);
 
 /// A topic that is read; its place among `BagPlan::topics` is its stream.
 struct BagTopic {
@@ -50,9 +46,9 @@ struct BagPlan {
   float no_return = 0.0F;             ///< m; 0: each scan's own range_max
 };
 
-/// Which topics to read, by their types and the user's options. Throws InputError, `path` in front:
-/// no scanner, several topics of which one is to be chosen, a topic that is not there or named
-/// twice.
+/// Which topics to read, by their types and the user's options; none when there is no scanner among
+/// them. Throws InputError, `path` in front: several topics of which one is to be chosen, a topic
+/// that is not there or named twice.
 BagPlan ChooseTopics(const std::string& path,
                      const std::map<std::uint32_t, BagConnection>& connections,
                      const LogOptions& options);

@@ -36,13 +36,15 @@ bool LooksLikeText(std::string_view beginning) {
 /// Throws InputError when the file is no text at all.
 void CheckBeginning(const std::string& path, const TextSource& source, std::string_view block) {
   constexpr std::size_t kLookedAt = 4096;
-  if (block.empty() && source.IsGzip() && source.Truncated()) {
-    throw InputError(path + ": begins like gzip, but cannot be decompressed");
+  if (block.empty() && source.IsPacked() && source.Truncated()) {
+    throw InputError(path + ": begins like a packed file, but cannot be unpacked");
   }
   if (block.empty()) throw InputError(path + ": is empty");
   if (!LooksLikeText(block.substr(0, kLookedAt))) {
-    throw InputError(path +
-                     ": is binary, expected a CARMEN log (text, or text in gzip) or a ROS 1 bag");
+    throw InputError(
+        path +
+        ": is binary, expected a CARMEN log (text, also in gzip, bzip2 or zstd) or a bag "
+        "of ROS (.bag, .db3, .mcap)");
   }
 }
 

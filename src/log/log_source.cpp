@@ -5,9 +5,9 @@
 
 #include "carmen_reader.hpp"
 #include "log_plan.hpp"
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/log/open_bag.hpp"
+#include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
-#include "open_bag.hpp"
 #include "rosbag_reader.hpp"
 #include "spool.hpp"
 
@@ -43,7 +43,7 @@ LogSource::LogSource(const std::string& path, const LogOptions& options) : path_
   }
   spool_ = std::make_shared<Spool>(file);
   try {
-    if (Ros2BagFile::IsBag(spool_->path())) {
+    if (BeginsAsSqlite(spool_->path())) {
       throw InputError(path +
                        ": a ROS 2 bag in SQLite cannot be read from a stream; give its file");
     }

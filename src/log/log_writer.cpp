@@ -13,8 +13,12 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "log_sink.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/scan_calibration.hpp"
+#include "mcap_writer.hpp"
+#include "ros1_bag_writer.hpp"
+#include "ros_log_writer.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -24,13 +28,16 @@ constexpr int kPoseDecimals = 6;
 constexpr int kAngleDecimals = 12;  // a step is multiplied by hundreds of beams
 constexpr const char* kHost = "nohost";
 
+bool HasEnding(const std::string& path, const std::string& ending) {
+  return path.size() >= ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
 /// The file, plain or gzip by its name.
 class TextSink {
  public:
   explicit TextSink(const std::string& path) : path_(path) {
-    const std::string ending = ".gz";
-    const bool is_gzip = path.size() >= ending.size() &&
-                         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+    const bool is_gzip = HasEnding(path, ".gz");
     // Level 4: half the time of the default for a tenth more bytes, on ranges.
     if (is_gzip) {
       gzip_ = gzopen(path.c_str(), "wb4");
@@ -78,26 +85,24 @@ class TextSink {
   std::FILE* plain_ = nullptr;
 };
 
-}  // namespace
-
-class LogWriter::Impl {
+class CarmenWriter final : public LogSink {
  public:
-  Impl(const std::string& path, int range_decimals)
+  CarmenWriter(const std::string& path, int range_decimals)
       : sink_(path), range_decimals_(std::clamp(range_decimals, 1, 9)) {}
 
-  void Write(const Observation& observation) {
+  void Write(const Observation& observation) override {
     std::visit([this](const auto& reading) { WriteReading(reading); }, observation);
     FlushWhenFull();
   }
 
-  void WriteComment(const std::string& text) {
+  void WriteComment(const std::string& text) override {
     Append("# ");
     for (const char c : text) text_.push_back(c == '\n' || c == '\r' ? ' ' : c);
     text_.push_back('\n');
     FlushWhenFull();
   }
 
-  void Close() {
+  void Close() override {
     if (closed_) return;
     closed_ = true;
     sink_.Write(text_);
@@ -243,18 +248,26 @@ class LogWriter::Impl {
   std::optional<float> flaser_limit_;
 };
 
+std::unique_ptr<LogSink> MakeSink(const std::string& path, int range_decimals) {
+  if (HasEnding(path, ".bag")) return MakeRosLogWriter(CreateRos1Bag(path));
+  if (HasEnding(path, ".mcap")) return MakeRosLogWriter(CreateMcap(path));
+  return std::make_unique<CarmenWriter>(path, range_decimals);
+}
+
+}  // namespace
+
 LogWriter::LogWriter(const std::string& path, int range_decimals)
-    : impl_(std::make_unique<Impl>(path, range_decimals)) {}
+    : sink_(MakeSink(path, range_decimals)) {}
 LogWriter::~LogWriter() {
   try {
-    impl_->Close();
+    sink_->Close();
   } catch (const std::exception&) {
     // Whoever wants to know calls Close().
   }
 }
 
-void LogWriter::Write(const Observation& observation) { impl_->Write(observation); }
-void LogWriter::WriteComment(const std::string& text) { impl_->WriteComment(text); }
-void LogWriter::Close() { impl_->Close(); }
+void LogWriter::Write(const Observation& observation) { sink_->Write(observation); }
+void LogWriter::WriteComment(const std::string& text) { sink_->WriteComment(text); }
+void LogWriter::Close() { sink_->Close(); }
 
 }  // namespace masked_mapper

@@ -1,16 +1,150 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "open_bag.hpp"
+#include "masked_mapper/log/open_bag.hpp"
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "bag_sequence.hpp"
 #include "masked_mapper/log/bag_file.hpp"
 #include "masked_mapper/log/ros2_bag_file.hpp"
+#include "masked_mapper/log/text_source.hpp"
+#include "masked_mapper/text/input_error.hpp"
+#include "mcap_file.hpp"
+#include "spooled_file.hpp"
+#include "unpacking.hpp"
 
 namespace masked_mapper {
+namespace {
 
-bool IsBag(const std::string& path) { return BagFile::IsBag(path) || Ros2BagFile::IsBag(path); }
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 100000;
+
+enum class BagKind { kNone, kRos1, kSqlite, kMcap };
+
+constexpr std::string_view kRos1Magic = "#ROSBAG V";
+constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
+constexpr std::string_view kMcapOfAnyVersion("\x89MCAP", 5);
+
+BagKind KindByMagic(std::string_view beginning) {
+  const auto begins = [beginning](std::string_view magic) {
+    return beginning.substr(0, magic.size()) == magic;
+  };
+  if (begins(kRos1Magic)) return BagKind::kRos1;
+  if (begins(kSqliteMagic)) return BagKind::kSqlite;
+  if (begins(kMcapOfAnyVersion)) return BagKind::kMcap;
+  return BagKind::kNone;
+}
+
+struct Beginning {
+  BagKind kind = BagKind::kNone;
+  bool is_packed = false;
+};
+
+Beginning BeginningOf(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  std::array<char, 16> bytes{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), bytes.size());
+  const auto count = static_cast<std::size_t>(file.gcount());
+  if (PackingOf(reinterpret_cast<const unsigned char*>(bytes.data()), count) == Packing::kNone) {
+    return {KindByMagic({bytes.data(), count}), false};
+  }
+  try {
+    TextSource source(path);
+    return {KindByMagic({bytes.data(), source.Read(bytes.data(), bytes.size())}), true};
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+std::unique_ptr<RosBag> OpenPlain(BagKind kind, const std::string& path, const std::string& shown) {
+  if (kind == BagKind::kSqlite) return std::make_unique<Ros2BagFile>(path, shown);
+  if (kind == BagKind::kMcap) return std::make_unique<McapFile>(path, shown);
+  return std::make_unique<BagFile>(path, shown);
+}
+
+/// What is unpacked of a bag. A cut stream does not show in all kinds of file.
+class SpooledBag final : public RosBag {
+ public:
+  SpooledBag(BagKind kind, const std::string& path) {
+    // The file stays readable while it is open, and is gone whatever happens to the program.
+    const SpooledFile spooled(path);
+    truncated_ = spooled.truncated();
+    bag_ = OpenPlain(kind, spooled.path(), path);
+  }
+
+  std::optional<BagMessage> Next() override { return bag_->Next(); }
+  void Rewind() override { bag_->Rewind(); }
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return bag_->Connections();
+  }
+  bool IsIndexed() const override { return bag_->IsIndexed(); }
+  std::optional<double> EndTime() const override { return bag_->EndTime(); }
+  bool Truncated() const override { return truncated_ || bag_->Truncated(); }
+  std::uint64_t Damaged() const override { return bag_->Damaged(); }
+  std::string FirstDamage() const override { return bag_->FirstDamage(); }
+  double Progress() const override { return bag_->Progress(); }
+
+ private:
+  std::unique_ptr<RosBag> bag_;
+  bool truncated_ = false;
+};
+
+/// .db3 and .mcap files, packed or not.
+bool IsNamedAsBag(const fs::path& path) {
+  static const std::set<std::string> packed = {".zstd", ".zst", ".gz", ".bz2"};
+  const fs::path name = packed.count(path.extension().string()) > 0 ? path.stem() : path.filename();
+  return name.extension() == ".db3" || name.extension() == ".mcap";
+}
+
+std::vector<std::string> FilesOf(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (IsNamedAsBag(entry.path())) files.push_back(entry.path().string());
+    if (files.size() > kMostFiles) throw InputError(folder + ": too many files of a bag");
+  }
+  std::sort(files.begin(), files.end());
+  // What was unpacked by hand stands beside what it was unpacked from.
+  const std::set<std::string> all(files.begin(), files.end());
+  files.erase(std::remove_if(files.begin(), files.end(),
+                             [&all](const std::string& file) {
+                               return all.count(fs::path(file).replace_extension("").string()) > 0;
+                             }),
+              files.end());
+  return files;
+}
+
+}  // namespace
+
+bool IsBag(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return BeginningOf(path).kind != BagKind::kNone;
+  return fs::exists(fs::path(path) / "metadata.yaml", error) || !FilesOf(path).empty();
+}
 
 std::unique_ptr<RosBag> OpenBag(const std::string& path) {
-  if (Ros2BagFile::IsBag(path)) return std::make_unique<Ros2BagFile>(path);
-  return std::make_unique<BagFile>(path);
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    const std::vector<std::string> files = FilesOf(path);
+    if (!files.empty()) return std::make_unique<BagSequence>(files, BagSequence::Order::kByTime);
+    throw InputError(path + ": this folder of a ROS 2 bag holds no .db3 and no .mcap file");
+  }
+  const Beginning beginning = BeginningOf(path);
+  if (beginning.is_packed && beginning.kind != BagKind::kNone) {
+    return std::make_unique<SpooledBag>(beginning.kind, path);
+  }
+  if (beginning.kind == BagKind::kNone && fs::is_regular_file(path, error)) {
+    throw InputError(path + ": is not a ROS bag (.bag, .db3 or .mcap)");
+  }
+  return OpenPlain(beginning.kind, path, path);
 }
 
 }  // namespace masked_mapper

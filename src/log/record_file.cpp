@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "masked_mapper/text/input_error.hpp"
 
@@ -16,14 +17,15 @@ constexpr std::uint64_t kLargestHeader = std::uint64_t{1} << 20U;
 
 }  // namespace
 
-RecordFile::RecordFile(const std::string& path) : path_(path) {
+RecordFile::RecordFile(const std::string& path, std::string shown_name)
+    : name_(std::move(shown_name)) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(path + ": is no file that can be read");
+    throw InputError(name_ + ": is no file that can be read");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
   file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw InputError(path + ": " + std::strerror(errno));
+  if (!file_) throw InputError(name_ + ": " + std::strerror(errno));
 }
 
 bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
@@ -45,7 +47,7 @@ bool RecordFile::ReadLength(std::uint64_t* length) {
 void RecordFile::Read(std::uint64_t count, std::vector<unsigned char>* bytes) {
   bytes->resize(count);
   if (std::fread(bytes->data(), 1, count, file_.get()) != count) {
-    throw InputError(path_ + ": cannot be read");
+    throw InputError(name_ + ": cannot be read");
   }
   position_ += count;
 }
@@ -58,7 +60,7 @@ bool RecordFile::Skip(std::uint64_t count) {
 
 void RecordFile::Seek(std::uint64_t position) {
   if (::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
-    throw InputError(path_ + ": cannot be read");
+    throw InputError(name_ + ": cannot be read");
   }
   position_ = position;
 }

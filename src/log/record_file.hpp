@@ -15,7 +15,7 @@ namespace masked_mapper {
 class RecordFile {
  public:
   /// Throws InputError, as all below: cannot be opened or read.
-  explicit RecordFile(const std::string& path);
+  RecordFile(const std::string& path, std::string shown_name);
 
   std::uint64_t size() const { return size_; }
   std::uint64_t position() const { return position_; }
@@ -36,7 +36,7 @@ class RecordFile {
   };
   bool ReadLength(std::uint64_t* length);
 
-  std::string path_;
+  std::string name_;
   std::unique_ptr<std::FILE, FileCloser> file_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "open_bag.hpp"
+#include "masked_mapper/log/open_bag.hpp"
 #include "spool.hpp"
 
 namespace masked_mapper {

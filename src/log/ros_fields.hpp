@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a serialised ROS message, one after the other, of either version. Once one does not
-// fit, nothing does, and good() is false. Counts are checked before anything is allocated.
+// The fields of a serialised ROS message, one after the other, of either version, as they are read
+// and as they are written. Once one that is read does not fit, nothing does, and good() is false.
+// Counts are checked before anything is allocated.
 #pragma once
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/exceptions/Exception.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/log/ros_messages.hpp"
+#include "output_bytes.hpp"
 
 namespace masked_mapper {
 
 constexpr std::size_t kLongestFrameId = 256;
+constexpr std::uint64_t kNanoseconds = 1000000000;  // of a second
 
 /// As ROS 1 wrote it, without the leading slash.
 inline std::string FrameId(std::string frame) {
@@ -165,6 +171,59 @@ class CdrFields {
   eprosima::fastcdr::FastBuffer buffer_;
   eprosima::fastcdr::Cdr cdr_;
   bool good_ = true;
+};
+
+/// ns of a stamp, to a microsecond: more a double does not hold.
+inline std::uint64_t NanosecondsOf(double stamp) {
+  return stamp > 0.0 ? static_cast<std::uint64_t>(std::llround(stamp * 1e6)) * 1000 : 0;
+}
+
+/// The inverse of Ros1Fields.
+class Ros1Output {
+ public:
+  template <typename T>
+  void Number(T value) {
+    AppendNumber(value, &bytes_);
+  }
+  void String(const std::string& text) { AppendString(text, &bytes_); }
+  void Header(const RosHeader& header) {
+    Number(std::uint32_t{0});  // seq
+    const std::uint64_t time = NanosecondsOf(header.stamp);
+    Number(static_cast<std::uint32_t>(time / kNanoseconds));
+    Number(static_cast<std::uint32_t>(time % kNanoseconds));
+    String(header.frame_id);
+  }
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// The inverse of CdrFields, little-endian. The library leaves what it skips to align as it was in
+/// memory, and the same messages would not be the same bytes.
+class CdrOutput {
+ public:
+  template <typename T>
+  void Number(T value) {
+    while ((bytes_.size() - kEncapsulation.size()) % sizeof(T) != 0) bytes_.push_back('\0');
+    AppendNumber(value, &bytes_);
+  }
+  void String(const std::string& text) {
+    Number(static_cast<std::uint32_t>(text.size() + 1));
+    bytes_.append(text.c_str(), text.size() + 1);
+  }
+  void Header(const RosHeader& header) {
+    const std::uint64_t time = NanosecondsOf(header.stamp);
+    Number(static_cast<std::int32_t>(time / kNanoseconds));
+    Number(static_cast<std::uint32_t>(time % kNanoseconds));
+    String(header.frame_id);
+  }
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::string_view kEncapsulation{"\0\1\0\0", 4};
+
+  std::string bytes_{kEncapsulation};
 };
 
 }  // namespace masked_mapper

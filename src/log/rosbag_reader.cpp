@@ -8,8 +8,10 @@
 #include "bag_look.hpp"
 #include "bag_observations.hpp"
 #include "bag_sequence.hpp"
+#include "bag_without_scans.hpp"
+#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
-#include "open_bag.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "sorted_bag.hpp"
 
 namespace masked_mapper {
@@ -76,7 +78,7 @@ class RosBagPlan final : public LogPlan {
       : options_(options),
         open_([paths]() -> std::unique_ptr<RosBag> {
           if (paths.size() == 1) return OpenBag(paths.front());
-          return std::make_unique<BagSequence>(paths);
+          return std::make_unique<BagSequence>(paths, BagSequence::Order::kAsGiven);
         }),
         shelf_(std::make_shared<BagShelf>(open_)),
         whole_(std::make_shared<WholeBag>()) {
@@ -88,6 +90,9 @@ class RosBagPlan final : public LogPlan {
     }
     const std::string& path = paths.front();
     topics_ = ChooseTopics(path, bag->Connections(), options);
+    if (topics_.scanners == 0) {
+      throw InputError(path + ": " + WhatIsThereInsteadOfScans(bag.get()));
+    }
     plan_ = LookAtBag(path, options, topics_, bag.get());
     shelf_->PutBack(std::move(bag));
   }

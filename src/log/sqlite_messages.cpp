@@ -43,8 +43,9 @@ void SqliteMessages::CloseStatement::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
-SqliteMessages::SqliteMessages(const fs::path& path) : path_(path.string()) {
-  if (!BeginsAsSqlite(path)) throw InputError(path_ + ": no ROS 2 bag (not an SQLite file)");
+SqliteMessages::SqliteMessages(const fs::path& path, std::string shown_name)
+    : name_(std::move(shown_name)) {
+  if (!BeginsAsSqlite(path)) throw InputError(name_ + ": no ROS 2 bag (not an SQLite file)");
   sqlite3* opened = nullptr;
   // Immutable: nothing is written beside a file that may stand on a read-only medium.
   const std::string uri = SqliteUri(path) + (HasCompanion(path) ? "" : "?immutable=1");
@@ -97,7 +98,7 @@ int SqliteMessages::OnProgress(void* self) {
 }
 
 void SqliteMessages::Fail() const {
-  throw InputError(path_ + ": cannot be read as a ROS 2 bag: " + sqlite3_errmsg(database_.get()));
+  throw InputError(name_ + ": cannot be read as a ROS 2 bag: " + sqlite3_errmsg(database_.get()));
 }
 
 SqliteMessages::Statement SqliteMessages::Prepare(const char* sql) {
@@ -123,7 +124,7 @@ void SqliteMessages::CheckTable(const std::string& name) {
   if (!statement) Fail();
   if (!Step(statement.get())) {
     if (damaged_) Fail();
-    throw InputError(path_ + ": no ROS 2 bag (an SQLite file without the table `" + name + "`)");
+    throw InputError(name_ + ": no ROS 2 bag (an SQLite file without the table `" + name + "`)");
   }
   std::string definition = Text(statement.get(), 1);
   std::transform(definition.begin(), definition.end(), definition.begin(),
@@ -131,7 +132,7 @@ void SqliteMessages::CheckTable(const std::string& name) {
   const bool is_table = Text(statement.get(), 0) == "table";
   const bool is_plain = definition.rfind("CREATE TABLE", 0) == 0 && !HasComputedColumns(name);
   if (is_table && is_plain) return;
-  throw InputError(path_ + ": no ROS 2 bag (`" + name + "` is not a plain table)");
+  throw InputError(name_ + ": no ROS 2 bag (`" + name + "` is not a plain table)");
 }
 
 bool SqliteMessages::HasComputedColumns(const std::string& table) {
@@ -159,10 +160,7 @@ void SqliteMessages::ReadExtent() {
     greatest_id_ = sqlite3_column_int64(last.get(), 0);
     last_time_ = sqlite3_column_int64(last.get(), 1);
   }
-  const std::optional<Row> first = Next();
-  if (first) first_time_ = first->time;
   // A page that only the far end of the table needs is missed when the reading gets there.
-  Rewind();
   damaged_ = false;
 }
 

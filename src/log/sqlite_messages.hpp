@@ -21,15 +21,14 @@ constexpr std::size_t kMostBagTopics = 10000;
 
 class SqliteMessages {
  public:
-  /// Throws InputError: no SQLite file, not the tables of a bag, cannot be opened.
-  explicit SqliteMessages(const std::filesystem::path& path);
+  /// Throws InputError, with `shown_name` for the file: no SQLite file, not the tables of a bag,
+  /// cannot be opened.
+  SqliteMessages(const std::filesystem::path& path, std::string shown_name);
   ~SqliteMessages();
   SqliteMessages(const SqliteMessages&) = delete;
   SqliteMessages& operator=(const SqliteMessages&) = delete;
 
-  const std::string& path() const { return path_; }
   const std::map<std::int64_t, BagConnection>& topics() const { return topics_; }
-  std::int64_t first_time() const { return first_time_; }
   /// ns, of the message with the greatest id.
   std::int64_t last_time() const { return last_time_; }
   /// The file ends before its rows do.
@@ -66,11 +65,10 @@ class SqliteMessages {
   void ReadTopics();
   void ReadExtent();
 
-  std::string path_;
+  std::string name_;
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, BagConnection> topics_;
-  std::int64_t first_time_ = 0;  ///< ns
-  std::int64_t last_time_ = 0;
+  std::int64_t last_time_ = 0;  ///< ns
   std::int64_t greatest_id_ = 0;
   Statement messages_;
   std::int64_t last_id_ = 0;

@@ -2,7 +2,6 @@
 #include "masked_mapper/log/text_source.hpp"
 
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +11,7 @@
 
 #include "masked_mapper/text/ends_with.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "unpacking.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -39,33 +39,26 @@ class TextSource::Impl {
     if (file_ == nullptr) throw InputError(path + ": " + std::strerror(errno));
     try {
       Refill();
-      is_gzip_ = AtGzipMagic();
-      if (!is_gzip_ && file_size_ > 0 && EndsWith(path, ".gz")) {
+      packing_ = PackingHere();
+      if (packing_ != Packing::kGzip && file_size_ > 0 && EndsWith(path, ".gz")) {
         throw InputError(path + ": named .gz, but not gzip");
       }
-      if (is_gzip_) {
-        // 16 + 15: a gzip header is demanded, and the largest window allowed.
-        if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw std::bad_alloc();
-        inflating_ = true;
-      }
+      unpacker_ = MakeUnpacker(packing_);
     } catch (...) {
       std::fclose(file_);
       throw;
     }
   }
 
-  ~Impl() {
-    if (inflating_) inflateEnd(&stream_);
-    std::fclose(file_);
-  }
+  ~Impl() { std::fclose(file_); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
   std::size_t Read(char* buffer, std::size_t capacity) {
-    return is_gzip_ ? ReadGzip(buffer, capacity) : ReadPlain(buffer, capacity);
+    return IsPacked() ? ReadPacked(buffer, capacity) : ReadPlain(buffer, capacity);
   }
 
-  bool is_gzip() const { return is_gzip_; }
+  bool IsPacked() const { return packing_ != Packing::kNone; }
   bool truncated() const { return truncated_; }
   std::uint64_t trailing_bytes() const { return trailing_bytes_; }
   double Progress() const {
@@ -88,9 +81,8 @@ class TextSource::Impl {
     return count > 0;
   }
 
-  bool AtGzipMagic() const {
-    return input_end_ - input_begin_ >= 2 && input_[input_begin_] == 0x1f &&
-           input_[input_begin_ + 1] == 0x8b;
+  Packing PackingHere() const {
+    return PackingOf(input_.data() + input_begin_, input_end_ - input_begin_);
   }
 
   std::size_t ReadPlain(char* buffer, std::size_t capacity) {
@@ -105,47 +97,45 @@ class TextSource::Impl {
     return filled;
   }
 
-  std::size_t ReadGzip(char* buffer, std::size_t capacity) {
-    std::size_t filled = 0;
-    while (filled < capacity && inflating_) {
-      if (input_begin_ == input_end_ && !Refill()) {
-        truncated_ = true;
-        StopInflating();
-        break;
-      }
-      stream_.next_in = input_.data() + input_begin_;
-      stream_.avail_in = static_cast<uInt>(input_end_ - input_begin_);
-      stream_.next_out = reinterpret_cast<Bytef*>(buffer + filled);
-      stream_.avail_out =
-          static_cast<uInt>(std::min<std::size_t>(capacity - filled, std::size_t{1} << 30));
-      const uInt room = stream_.avail_out;
-      const int status = inflate(&stream_, Z_NO_FLUSH);
-      input_begin_ = input_end_ - stream_.avail_in;
-      filled += room - stream_.avail_out;
-      if (status == Z_STREAM_END) {
-        BeginNextMember();
-      } else if (status != Z_OK && status != Z_BUF_ERROR) {
-        truncated_ = true;
-        StopInflating();
+  std::size_t ReadPacked(char* buffer, std::size_t capacity) {
+    auto* out = reinterpret_cast<unsigned char*>(buffer);
+    std::size_t room = capacity;
+    while (room > 0 && unpacker_) {
+      // Even without a byte left, what was taken in before may not be out yet.
+      if (input_begin_ == input_end_) Refill();
+      const unsigned char* in = input_.data() + input_begin_;
+      std::size_t in_size = input_end_ - input_begin_;
+      const std::size_t room_before = room;
+      const std::size_t in_before = in_size;
+      const Unpacker::State state = unpacker_->Unpack(&in, &in_size, &out, &room);
+      input_begin_ = input_end_ - in_size;
+      if (state == Unpacker::State::kEnd) {
+        BeginNextStream();
+      } else if (state == Unpacker::State::kBroken ||
+                 (room == room_before && in_size == in_before)) {
+        StopUnpacking(true);
       }
     }
-    return filled;
+    return capacity - room;
   }
 
-  /// Gzip files may be concatenated; anything else behind a member is ignored, as gzip itself does.
-  void BeginNextMember() {
-    if (input_end_ - input_begin_ < 2) Refill();
-    if (AtGzipMagic()) {
-      inflateReset(&stream_);
+  /// Packed files may be concatenated; anything else behind a stream is ignored, as gzip itself
+  /// does.
+  void BeginNextStream() {
+    constexpr std::size_t kLongestMagic = 5;
+    if (input_end_ - input_begin_ < kLongestMagic) Refill();
+    const Packing next = PackingHere();
+    if (next == packing_) {
+      unpacker_->Restart();
       return;
     }
     trailing_bytes_ = file_size_ - std::min(file_size_, bytes_read_ - (input_end_ - input_begin_));
-    StopInflating();
+    StopUnpacking(false);
   }
 
-  void StopInflating() {
-    inflateEnd(&stream_);
-    inflating_ = false;
+  void StopUnpacking(bool truncated) {
+    truncated_ = truncated;
+    unpacker_.reset();
     input_begin_ = input_end_;
   }
 
@@ -156,9 +146,8 @@ class TextSource::Impl {
   std::size_t input_begin_ = 0;
   std::size_t input_end_ = 0;
   std::uint64_t bytes_read_ = 0;
-  z_stream stream_{};
-  bool is_gzip_ = false;
-  bool inflating_ = false;
+  Packing packing_ = Packing::kNone;
+  std::unique_ptr<Unpacker> unpacker_;  ///< while it has something to give
   bool truncated_ = false;
   std::uint64_t trailing_bytes_ = 0;
 };
@@ -169,7 +158,7 @@ TextSource::~TextSource() = default;
 std::size_t TextSource::Read(char* buffer, std::size_t capacity) {
   return impl_->Read(buffer, capacity);
 }
-bool TextSource::IsGzip() const { return impl_->is_gzip(); }
+bool TextSource::IsPacked() const { return impl_->IsPacked(); }
 bool TextSource::Truncated() const { return impl_->truncated(); }
 std::uint64_t TextSource::TrailingBytes() const { return impl_->trailing_bytes(); }
 double TextSource::Progress() const { return impl_->Progress(); }

@@ -25,7 +25,7 @@ std::size_t CountMessages(BagFile* bag) {
 TEST(BagFileTest, ReadsMessagesInOrderTwice) {
   for (const bool indexed : {true, false}) {
     const TemporaryFile file(".bag", ScanBag(indexed));
-    BagFile bag(file.path());
+    BagFile bag(file.path(), file.path());
     EXPECT_EQ(bag.IsIndexed(), indexed);
     EXPECT_EQ(bag.Connections().size(), indexed ? 1U : 0U);
     for (int round = 0; round < 2; ++round) {
@@ -50,7 +50,7 @@ TEST(BagFileTest, ACutBagGivesWhatItHas) {
   std::size_t last_count = 0;
   for (std::size_t length = BagMagic().size(); length <= bytes.size(); length += 7) {
     const TemporaryFile file(".bag", bytes.substr(0, length));
-    BagFile bag(file.path());
+    BagFile bag(file.path(), file.path());
     const std::size_t count = CountMessages(&bag);
     EXPECT_GE(count, last_count);
     EXPECT_EQ(bag.Damaged(), 0U) << length;
@@ -66,7 +66,7 @@ TEST(BagFileTest, ReadsWhatADyingRecorderLeft) {
   const TemporaryFile file(".bag", BagMagic() + BagHeaderRecord(0, 0, 0) + ChunkRecord("") +
                                        connection + MessageRecord(1, 5, "abc") +
                                        MessageRecord(1, 6, "def").substr(0, 30));
-  BagFile bag(file.path());
+  BagFile bag(file.path(), file.path());
   EXPECT_EQ(CountMessages(&bag), 1U);
   EXPECT_TRUE(bag.Truncated());
 }
@@ -76,7 +76,7 @@ TEST(BagFileTest, GoesOnAtTheNextChunkBehindADamagedRecord) {
   const std::size_t second_chunk = bytes.find("compression", bytes.find("compression") + 10) - 8;
   bytes[second_chunk + 3] = '\x7f';  // an absurd length
   const TemporaryFile file(".bag", bytes);
-  BagFile bag(file.path());
+  BagFile bag(file.path(), file.path());
   EXPECT_GE(CountMessages(&bag), 8U);
   EXPECT_TRUE(bag.Truncated());
 }
@@ -94,7 +94,7 @@ TEST(BagFileTest, IndexRecordsOfTheFirstRecordersStateAWrongLength) {
                                    (ChunkRecord("").find("compression"));
   bytes.insert(second_chunk, wrong);
   const TemporaryFile file(".bag", bytes);
-  BagFile bag(file.path());
+  BagFile bag(file.path(), file.path());
   EXPECT_EQ(CountMessages(&bag), 12U);
   EXPECT_EQ(bag.Damaged(), 0U);
 }
@@ -108,7 +108,7 @@ TEST(BagFileTest, DamagedCompressionIsCountedNotFatal) {
     }
     if (std::string(compression).size() != 3) continue;
     const TemporaryFile file(".bag", bytes);
-    BagFile bag(file.path());
+    BagFile bag(file.path(), file.path());
     CountMessages(&bag);
   }
 }
@@ -117,7 +117,7 @@ TEST(BagFileTest, RefusesOtherVersionsAndWhatIsNoBag) {
   const auto message = [](const std::string& bytes) -> std::string {
     const TemporaryFile file(".bag", bytes);
     try {
-      BagFile bag(file.path());
+      BagFile bag(file.path(), file.path());
     } catch (const InputError& error) {
       return error.what();
     }
@@ -130,8 +130,7 @@ TEST(BagFileTest, RefusesOtherVersionsAndWhatIsNoBag) {
       message(BagMagic() + BagRecord({{"op", Op(3)}, {"encryptor", "AES"}}, "")).find("encrypted"),
       std::string::npos);
   EXPECT_EQ(message(BagMagic()), "");
-  EXPECT_THROW(BagFile("/no/such.bag"), InputError);
-  EXPECT_FALSE(BagFile::IsBag("/no/such.bag"));
+  EXPECT_THROW(BagFile("/no/such.bag", "x.bag"), InputError);
 }
 
 // Whatever the bytes are, the reader ends; sanitizers watch over this test.
@@ -146,7 +145,7 @@ TEST(BagFileTest, SurvivesGarbledBytes) {
     }
     const TemporaryFile file(".bag", bytes);
     try {
-      BagFile bag(file.path());
+      BagFile bag(file.path(), file.path());
       std::size_t count = 0;
       while (bag.Next()) ++count;
       EXPECT_LE(count, 100U);

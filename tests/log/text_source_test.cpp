@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "log/packed_bytes.hpp"
 #include "log/temporary_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
@@ -26,9 +27,11 @@ std::string SomeText() {
   return text;
 }
 
-TEST(TextSourceTest, ReadsPlainAndGzipByContent) {
+TEST(TextSourceTest, ReadsPlainAndPackedByContent) {
   const std::string text = SomeText();
-  for (const std::string& content : {text, Gzipped(text)}) {
+  for (const std::string& content :
+       {text, Gzipped(text), Bzip2Packed(text), ZstdPacked(text),
+        ZstdPacked(text.substr(0, 1000)) + ZstdPacked(text.substr(1000))}) {
     const TemporaryFile file(".log", content);
     TextSource source(file.path());
     EXPECT_EQ(ReadAll(&source), text);

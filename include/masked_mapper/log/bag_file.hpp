@@ -18,11 +18,9 @@ namespace masked_mapper {
 
 class BagFile final : public RosBag {
  public:
-  /// Whether a file begins as a bag of any version does. False also when it cannot be opened.
-  static bool IsBag(const std::string& path);
-
-  /// Throws InputError: cannot be opened, obsolete version, encrypted, no bag.
-  explicit BagFile(const std::string& path);
+  /// Throws InputError, with `shown_name` for the file: cannot be opened, obsolete version,
+  /// encrypted, no bag.
+  BagFile(const std::string& path, const std::string& shown_name);
   ~BagFile() override;
 
   std::optional<BagMessage> Next() override;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages of a ROS 2 bag that is stored in SQLite: one .db3 file, or the folder that holds one
-// or several beside its metadata.yaml. Files follow each other by their first message; within a
-// file the order is that of recording. The metadata tells nothing that the files do not, and is not
-// read.
+// The messages of one file of a ROS 2 bag that is stored in SQLite (.db3), in the order of
+// recording; each may be packed with zstd on its own (rosbag2's `--compression-mode message`).
 //
 // A file from elsewhere is opened read-only, its tables must be plain ones, a value has a greatest
 // size, and a step a greatest length, so that no schema can keep the reader busy.
@@ -19,11 +17,8 @@ namespace masked_mapper {
 
 class Ros2BagFile final : public RosBag {
  public:
-  /// Whether a path is an SQLite file, or a folder with a metadata.yaml or a .db3 in it.
-  static bool IsBag(const std::string& path);
-
-  /// Throws InputError: no bag, compressed, MCAP, cannot be opened.
-  explicit Ros2BagFile(const std::string& path);
+  /// Throws InputError, with `shown_name` for the file: no bag, cannot be opened.
+  Ros2BagFile(const std::string& path, const std::string& shown_name);
   ~Ros2BagFile() override;
 
   std::optional<BagMessage> Next() override;

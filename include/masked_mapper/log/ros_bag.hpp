@@ -45,6 +45,8 @@ class RosBag {
   virtual bool Truncated() const = 0;
   /// Records and chunks skipped because they make no sense.
   virtual std::uint64_t Damaged() const = 0;
+  /// The first of them in words.
+  virtual std::string FirstDamage() const { return "a chunk or record of the bag is damaged"; }
   /// Share of the file consumed, 0 to 1.
   virtual double Progress() const = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bytes of a text file, plain or gzip told apart by content. A damaged or cut gzip stream gives
-// its good part and says so.
+// The bytes of a file, plain or packed (gzip, bzip2, zstd) told apart by content. A damaged or cut
+// packed stream gives its good part and says so.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ class TextSource {
   /// Throws InputError when the disk refuses.
   std::size_t Read(char* buffer, std::size_t capacity);
 
-  bool IsGzip() const;
-  /// The gzip stream is cut or damaged; what came before has been handed out.
+  bool IsPacked() const;
+  /// The packed stream is cut or damaged; what came before has been handed out.
   bool Truncated() const;
-  /// Bytes behind the last gzip member that are none, ignored.
+  /// Bytes behind the last packed stream that are none, ignored.
   std::uint64_t TrailingBytes() const;
   /// Share of the file's own bytes consumed, 0 to 1.
   double Progress() const;

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What to tell the user of a bag that holds no scan.
+#pragma once
+
+#include <string>
+
+#include "masked_mapper/log/ros_bag.hpp"
+
+namespace masked_mapper {
+
+/// Its topics with their types and counts, for which it is read to its end, and what makes scans of
+/// them where that is known.
+std::string WhatIsThereInsteadOfScans(RosBag* bag);
+
+}  // namespace masked_mapper

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes of a file at any place, from a window that moves along.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "unpacking.hpp"
+
+namespace masked_mapper {
+
+class FileWindow {
+ public:
+  /// Throws InputError when the file cannot be read.
+  explicit FileWindow(const std::string& path, std::string shown_name);
+
+  std::uint64_t size() const { return size_; }
+  const std::string& name() const { return name_; }
+  /// At most `count` bytes, as many as the file has there; valid until the next call.
+  const unsigned char* At(std::uint64_t offset, std::size_t count, std::size_t* found);
+  /// `count` bytes that the file has.
+  void Read(std::uint64_t offset, std::size_t count, Bytes* bytes);
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void Fill(std::uint64_t offset, unsigned char* to, std::size_t count);
+
+  std::string name_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::uint64_t size_ = 0;
+  Bytes window_;
+  std::uint64_t window_begin_ = 0;
+};
+
+}  // namespace masked_mapper

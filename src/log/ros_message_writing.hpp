@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The inverse of ros_messages.hpp: what it reads, as bytes. Fields that it has no place for are
+// written as 0, and covariances as unknown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "masked_mapper/log/ros_messages.hpp"
+
+namespace masked_mapper {
+
+/// Stamps are written to a microsecond.
+std::string WriteLaserScan(const RosLaserScan& scan, MessageEncoding encoding);
+std::string WriteOdometry(const RosOdometry& odometry, MessageEncoding encoding);
+std::string WriteTransforms(const std::vector<RosTransform>& transforms, MessageEncoding encoding);
+std::string WriteImu(const RosImu& imu, MessageEncoding encoding);
+std::string WriteFluidPressure(const RosFluidPressure& pressure, MessageEncoding encoding);
+
+}  // namespace masked_mapper
