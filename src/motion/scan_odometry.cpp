@@ -123,8 +123,11 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   lost_ = is_believed ? 0 : lost_ + 1;
   path_.T_map_matched = path_.T_map_robot;
   path_.T_matched_robot = UncertainPose2{};
-  if (lost_ >= kMostLost) BeginAnew(view);
-  if (lost_ == 0) KeepMap(view);
+  if (is_believed) {
+    KeepMap(view);
+  } else if (lost_ >= kMostLost) {
+    BeginAnew(view);
+  }
   return step;
 }
 

@@ -172,6 +172,35 @@ TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   EXPECT_NEAR(path.y, 0.0, 0.05) << "m";
 }
 
+/// A robot at rest in a room, matched once more; then it sees `later` until the map is lost.
+ScanOdometry LostAtRest(const LaserScan& later) {
+  ScanOdometryOptions options;
+  options.settled_deg = 0.0;
+  ScanOdometry odometry(options);
+  const LaserScan room = FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0);
+  odometry.Observe(room, UncertainPose2{});
+  odometry.Observe(room, UncertainPose2{});
+  for (int i = 0; i < 5; ++i) odometry.Observe(later, UncertainPose2{});
+  return odometry;
+}
+
+TEST(ScanOdometry, AMapThatIsLostWithNothingToSeeBeginsAtTheNextScan) {
+  LaserScan nothing = FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0);
+  nothing.ranges.assign(nothing.ranges.size(), kNoReturn);
+  ScanOdometry odometry = LostAtRest(nothing);
+  EXPECT_EQ(odometry.map_scans(), 0U);
+  odometry.Observe(nothing, UncertainPose2{});
+  EXPECT_EQ(odometry.map_scans(), 0U);
+  odometry.Observe(FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0), UncertainPose2{});
+  EXPECT_EQ(odometry.map_scans(), 1U);
+}
+
+TEST(ScanOdometry, TheScanThatBeginsAMapAnewIsInItOnce) {
+  BoxScene hall;
+  hall.AddBox(-21.3, -17.6, 22.4, 19.7);
+  EXPECT_EQ(LostAtRest(hall.Scan({}, 361, 270.0)).map_scans(), 1U);
+}
+
 TEST(ScanOdometry, ATurnInACabIsTheBetterTheLongerTheRobotStoodBefore) {
   // Half a turn between near walls hangs on what is known of them before it: one scan, or several.
   BoxScene cab;

@@ -58,6 +58,9 @@ class ScanOdometry {
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
 
+  /// Scans in the local map; 0: there is none.
+  std::size_t map_scans() const { return maps_.current ? maps_.current->scans() : 0; }
+
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
