@@ -25,7 +25,7 @@ void FloorTracker::Observe(const Observation& observation) {
     if (scan->T_odom_robot) track_.Observe({scan->stamp, *scan->T_odom_robot});
     if (Uses(FloorSource::kLidar)) lidar_.Observe(*scan);
   } else if (const auto* pressure = std::get_if<PressureReading>(&observation)) {
-    pressure_.push_back(*pressure);
+    pressure_.Observe(*pressure);
   } else if (const auto* acceleration = std::get_if<AccelerationReading>(&observation)) {
     acceleration_.Observe(*acceleration);
   } else if (const auto* label = std::get_if<FloorLabel>(&observation)) {
@@ -48,7 +48,7 @@ bool FloorTracker::NeedsRanges() const {
     return false;
   }
   if (options_.source == FloorSource::kLidar) return true;
-  return !HasLabels() && HeightsOfPressure(pressure_, options_.pressure.heights).samples.empty() &&
+  return !HasLabels() && pressure_.Heights(options_.pressure.heights).samples.empty() &&
          !acceleration_.FindRides(track_, options_.storeys).usable;
 }
 
@@ -68,7 +68,7 @@ FloorTimeline FloorTracker::Finish() {
   std::string sensor;
   const bool takes_any = Uses(FloorSource::kLabels);
   if (takes_any || options_.source == FloorSource::kPressure) {
-    const PressureHeights heights = HeightsOfPressure(pressure_, options_.pressure.heights);
+    const PressureHeights heights = pressure_.Heights(options_.pressure.heights);
     warnings_.insert(warnings_.end(), heights.warnings.begin(), heights.warnings.end());
     if (!heights.samples.empty()) {
       sensor = "pressure";

@@ -13,6 +13,7 @@
 #include "masked_mapper/motion/floor_pressure.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/pressure_heights.hpp"
 #include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
@@ -72,7 +73,7 @@ class FloorTracker {
   FloorOptions options_;
   bool labels_are_given_ = false;
   std::vector<FloorLabel> labels_;
-  std::vector<PressureReading> pressure_;
+  PressureTrack pressure_;
   AccelerationTrack acceleration_;
   LidarTrack lidar_;
   bool has_scans_ = false;
