@@ -172,6 +172,36 @@ TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   EXPECT_NEAR(path.y, 0.0, 0.05) << "m";
 }
 
+TEST(ScanOdometry, ASceneThatChangesInTransitTurnsNoRobot) {
+  // A cab, and then at once a hall on whose walls the cab's fit nowhere near; the robot goes on.
+  BoxScene cab;
+  cab.AddBox(-1.0, -1.0, 1.0, 1.0);
+  BoxScene hall;
+  hall.AddBox(-1.6, -2.3, 7.0, 2.1);
+  hall.AddBox(3.0, 0.6, 3.8, 1.4);
+  for (const int late : {0, 4, 12}) {  // scans from the change to when it is said to be one
+    std::mt19937 random(5);
+    ScanOdometry odometry({});
+    for (int i = 0; i < 20; ++i) {
+      if (i == 3) odometry.EnterTransit();
+      odometry.Observe(cab.Scan({}, 181, 180.0, &random, 0.01), UncertainPose2{});
+    }
+    Pose2 truth;
+    Pose2 path;
+    for (int i = 0; i < 30; ++i) {
+      if (i == late) odometry.LeaveTransit();
+      const Pose2 step = i < 8 ? Pose2{} : Pose2{0.1, 0.0, DegToRad(2.0)};
+      truth = truth * step;
+      path = path * odometry
+                        .Observe(hall.Scan(truth, 181, 180.0, &random, 0.01),
+                                 i < 8 ? UncertainPose2{} : Wheels(step, 0.02, 1.0), i == late)
+                        .mean;
+    }
+    EXPECT_LT(Distance(path, truth), 0.05) << late << " scans late";
+    EXPECT_LT(RadToDeg(std::abs(WrapAngle(path.theta - truth.theta))), 0.5) << late;
+  }
+}
+
 /// A robot at rest in a room, matched once more; then it sees `later` until the map is lost.
 ScanOdometry LostAtRest(const LaserScan& later) {
   ScanOdometryOptions options;
