@@ -93,7 +93,7 @@ LogSurvey SurveyLog(const std::string& path, const MappingOptions& options) {
   if (floors.NeedsRanges()) {
     const std::unique_ptr<LogReader> again = OpenLog(path, options.log);
     while (const std::optional<Observation> observation = again->Next()) {
-      floors.Observe(*observation);
+      floors.ObserveRanges(*observation);
     }
   }
   survey.floors = floors.Finish();
