@@ -33,6 +33,27 @@ void WarnOfTheLog(const std::string& path, const LogStatistics& log, BuildingMap
   }
 }
 
+std::vector<Transit> TransitsOf(const FloorTimeline& floors, const LogStatistics& log) {
+  constexpr std::pair<FloorSource, const char*> kNames[] = {
+      {FloorSource::kLabels, "labels"},
+      {FloorSource::kPressure, "pressure"},
+      {FloorSource::kAcceleration, "acceleration"},
+      {FloorSource::kLidar, "lidar"}};
+  std::vector<Transit> transits;
+  for (const FloorChange& change : ChangesOf(floors)) {
+    Transit transit{std::max(change.t_out, log.first_stamp),
+                    std::min(change.t_in, log.last_stamp),
+                    change.height_m,
+                    change.sigma_m,
+                    {}};
+    for (const auto& [source, name] : kNames) {
+      if (change.by.Has(source)) transit.by.emplace_back(name);
+    }
+    transits.push_back(std::move(transit));
+  }
+  return transits;
+}
+
 // What the checkpoint keeps beside the mapper: the survey, so that the log is not surveyed again.
 std::string PackState(const LogSurvey& survey, MaskedMapper& mapper) {
   std::string survey_bytes = PackSurvey(survey);
@@ -92,6 +113,7 @@ class LogDrive {
     result.seconds += spent_;
     result.seconds.read += read_seconds_;
     result.motion_source = settled_.motion.source;
+    result.transits = TransitsOf(survey_.floors, result.log);
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
