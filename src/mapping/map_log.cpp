@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "masked_mapper/joining/floor_joining.hpp"
+#include "masked_mapper/joining/visit_tying.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
@@ -117,6 +118,7 @@ class LogDrive {
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
+    TieVisits(settled_.closures, result);
     for (const std::string& warning : survey_.warnings) {
       result.warnings.push_back(path_ + ": " + warning);
     }
