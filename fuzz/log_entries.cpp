@@ -38,7 +38,7 @@ void RosBag2(const std::uint8_t* data, std::size_t size) {
 
 void Mcap(const std::uint8_t* data, std::size_t size) {
   const InputFile file(".mcap", data, size);
-  ReadToTheEnd(&OpenRosBag, file.path());
+  ReadToTheEnd(file.path());
 }
 
 void RosMessages(const std::uint8_t* data, std::size_t size) {

@@ -7,10 +7,10 @@ sys.path.insert(0, os.path.dirname(__file__))
 from runs import figure, look_of, median, read_all, save, write_csv  # noqa: E402
 
 
-def draw(rows, masks, path):
+def draw(rows, masks, motion, path):
     drawing, (errors, recalls, times) = figure(columns=3, width=10.5, height=3.6)
     for mask in masks:
-        runs = [row for row in rows if row["mask"] == mask]
+        runs = [row for row in rows if row["mask"] == mask and row["motion"] == motion]
         look = {**look_of(mask), "markevery": max(1, len(runs) // 10)}
         shares = [100.0 * (i + 1) / len(runs) for i in range(len(runs))]
         errors.step(sorted(max(row["path_error_m"], 1e-3) for row in runs), shares, where="post",
@@ -35,11 +35,11 @@ def draw(rows, masks, path):
 def main(snakemake):
     rows = read_all(snakemake.input.runs)
     masks = list(dict.fromkeys(row["mask"] for row in rows))
-    columns = ["mask", "log", "path_driven_m", "attempted", "matched", "validated", "false",
-               "true_pairs", "closed_pairs", "path_error_m", "path_missing_m", "path_false_m",
+    columns = ["mask", "motion", "log", "path_driven_m", "attempted", "matched", "validated", "not_offered",
+               "false", "true_pairs", "closed_pairs", "path_error_m", "path_missing_m", "path_false_m",
                "trajectory_mean_m", "floors_right", "cpu_s"]
     write_csv(snakemake.output.csv, rows, columns)
-    draw(rows, masks, snakemake.output.svg)
+    draw(rows, masks, snakemake.params.motion, snakemake.output.svg)
 
 
 main(snakemake)  # noqa: F821

@@ -57,6 +57,7 @@ def read(path):
         "attempted": run["counts"]["attempted"],
         "matched": run["counts"]["matched"],
         "validated": run["counts"]["validated"],
+        "not_offered": run["counts"]["not_offered"],
         "false": closures.get("false"),
         "checked": closures.get("checked"),
         "true_pairs": closures.get("true_pairs"),

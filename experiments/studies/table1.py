@@ -10,7 +10,7 @@ from runs import (PAPER_TABLE1, STAGES, figure, median, read_all, save, spread, 
 
 def row_of(mask, motion, runs, timed):
     row = {"mask": mask, "motion": motion, "seeds": len(runs)}
-    for count in ("scan_nodes", "attempted", "matched", "validated"):
+    for count in ("scan_nodes", "attempted", "matched", "validated", "not_offered"):
         row[count] = median([run[count] for run in runs])
     for count in ("false", "true_pairs", "closed_pairs"):
         row[count] = sum(run[count] for run in runs)

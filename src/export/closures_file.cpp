@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/closures_file.hpp"
+#include "closures_file.hpp"
 
 #include "masked_mapper/text/number_text.hpp"
 #include "output_file.hpp"

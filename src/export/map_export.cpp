@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "closures_file.hpp"
 #include "floor_label.hpp"
 #include "g2o_file.hpp"
-#include "masked_mapper/export/closures_file.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"

@@ -96,6 +96,38 @@ Json FloorsJson(const std::vector<Summary::FloorEntry>& floors) {
   return json;
 }
 
+/// With the floors of the last pose before and of the first one after.
+std::vector<Summary::TransitEntry> TransitsOf(const BuildingMap& result) {
+  std::vector<Summary::TransitEntry> entries;
+  if (result.trajectory.empty()) return entries;
+  const auto label_at = [&](double stamp, bool before) {
+    auto pose = std::lower_bound(
+        result.trajectory.begin(), result.trajectory.end(), stamp,
+        [](const TrajectoryPose& known, double value) { return known.stamp < value; });
+    if (pose != result.trajectory.begin() && (before || pose == result.trajectory.end())) --pose;
+    return result.graph.floors()[static_cast<std::size_t>(pose->floor)].label;
+  };
+  for (const TransitRecord& transit : result.transits) {
+    entries.push_back({transit, label_at(transit.t_out, true), label_at(transit.t_in, false)});
+  }
+  return entries;
+}
+
+Json TransitsJson(const std::vector<Summary::TransitEntry>& entries) {
+  Json json = Json::array();
+  for (const Summary::TransitEntry& entry : entries) {
+    const TransitRecord& transit = entry.transit;
+    json.push_back({{"t_out", Rounded(transit.t_out, 1000.0)},
+                    {"t_in", Rounded(transit.t_in, 1000.0)},
+                    {"from", entry.from},
+                    {"to", entry.to},
+                    {"height_m", Rounded(transit.height_m, 1000.0)},
+                    {"sigma_m", Rounded(transit.sigma_m, 1000.0)},
+                    {"by", transit.by}});
+  }
+  return json;
+}
+
 Json DrivesJson(const std::vector<DriveFacts>& drives) {
   Json json = Json::array();
   for (const DriveFacts& drive : drives) {
@@ -197,6 +229,7 @@ Summary Summarise(const BuildingMap& result, const RunDescription& run,
     summary.floors.push_back({floors[i].label, floors[i].elevation, floors[i].elevation_measured,
                               nodes, KnownArea(grids.at(i))});
   }
+  summary.transits = TransitsOf(result);
   summary.rejections = RejectionsOf(result.closures);
   summary.motion_source = Name(result.motion_source);
   summary.seconds = WithTotal(result.seconds);
@@ -215,6 +248,7 @@ std::string SummaryText(const Summary& summary) {
                {"motion_source", summary.motion_source},
                {"counts", CountsJson(summary.counts)},
                {"floors", FloorsJson(summary.floors)},
+               {"transits", TransitsJson(summary.transits)},
                {"seconds", SecondsJson(summary.seconds)},
                {"peak_memory_mib", Rounded(summary.peak_memory_mib, 10.0)},
                {"options", SettingsJson(summary.run.settings)},

@@ -56,6 +56,10 @@ void ShiftStamps(double seconds, BuildingMap& map) {
   map.graph.ShiftStamps(seconds);
   for (TrajectoryPose& pose : map.trajectory) pose.stamp += seconds;
   for (KeptScan& kept : map.kept_scans) kept.scan.stamp += seconds;
+  for (TransitRecord& transit : map.transits) {
+    transit.t_out += seconds;
+    transit.t_in += seconds;
+  }
   for (Drive& drive : map.drives) drive.stamp_offset_s += seconds;
   map.log.first_stamp += seconds;
   map.log.last_stamp += seconds;
@@ -99,6 +103,7 @@ class DriveJoiner {
       pose.node_before += nodes;
       map_.trajectory.push_back(pose);
     }
+    map_.transits.insert(map_.transits.end(), more.transits.begin(), more.transits.end());
     for (KeptScan& kept : more.kept_scans) {
       kept.trajectory_index += poses;
       map_.kept_scans.push_back(std::move(kept));

@@ -29,7 +29,8 @@ BagEvidence::BagEvidence(const LogOptions& options, const BagPlan& topics)
     : options_(options),
       topics_(topics),
       clocks_(topics.topics.size()),
-      scanners_(topics.scanners) {}
+      scanners_(topics.scanners),
+      scan_clocks_(topics.scanners) {}
 
 void BagEvidence::Note(std::size_t stream, double time, double header) {
   clocks_[stream].Add(header, time);
@@ -46,6 +47,7 @@ void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan)
   auto& frames = scanners_[topics_.topics[stream].scanner];
   if (frames.size() < kMostFrames || frames.count(scan.header.frame_id) > 0) {
     frames[scan.header.frame_id].Add(scan, options_.min_range);
+    scan_clocks_[topics_.topics[stream].scanner][scan.header.frame_id].Add(scan.header.stamp, time);
   }
   if (IsRangeLimit(scan.range_max)) {
     max_range_ = std::max(max_range_, scan.range_max);
@@ -120,6 +122,10 @@ const ScannerEvidence& BagEvidence::EvidenceOf(std::size_t scanner) const {
   return scanners_[scanner].at(FrameOf(scanner));
 }
 
+const ClockEvidence& BagEvidence::ClockOf(std::size_t stream) const {
+  return stream < scanners_.size() ? scan_clocks_[stream].at(FrameOf(stream)) : clocks_[stream];
+}
+
 /// Parent and child of the link above a frame that odometry moves: the one of that name, else the
 /// lowest that travels.
 std::optional<std::pair<std::string, std::string>> BagEvidence::OdometryLink(
@@ -155,7 +161,7 @@ std::string BagEvidence::RobotFrame(const std::string& scan_frame, BagPlan* plan
 
 BagPlan BagEvidence::Conclude() const {
   BagPlan plan = topics_;
-  for (std::size_t i = 0; i < clocks_.size(); ++i) plan.clocks[i] = clocks_[i].Find();
+  for (std::size_t i = 0; i < clocks_.size(); ++i) plan.clocks[i] = ClockOf(i).Find();
   plan.clock_offset = plan.clocks.front().offset.value_or(0.0);
   for (std::size_t scanner = 0; scanner < plan.scanners; ++scanner) {
     if (scanners_[scanner].size() > 1) plan.topics[scanner].frame = FrameOf(scanner);
@@ -218,7 +224,7 @@ std::vector<SensorFinding> BagEvidence::Findings(const BagPlan& plan) const {
     const std::string& name = plan.topics[i].name;
     const TopicClock& clock = plan.clocks[i];
     if (!clock.offset || plan.topics[i].kind == TopicKind::kTransforms) continue;
-    const ClockEvidence::Strays strays = clocks_[i].FindStrays(clock);
+    const ClockEvidence::Strays strays = ClockOf(i).FindStrays(clock);
     if (std::abs(*clock.offset - plan.clock_offset) > kClocksApart) {
       add("clock of " + name + " against that of " + plan.topics.front().name + ", s",
           *clock.offset - plan.clock_offset, "its readings are stamped by their recording");

@@ -43,6 +43,8 @@ class BagEvidence {
   /// The frame of a scanner; of several, the one with the most scans that see anything.
   std::string FrameOf(std::size_t scanner) const;
   const ScannerEvidence& EvidenceOf(std::size_t scanner) const;
+  /// Of a scanner's topic, that of the frame which is read.
+  const ClockEvidence& ClockOf(std::size_t stream) const;
   std::optional<std::pair<std::string, std::string>> OdometryLink(const std::string& frame) const;
   std::string RobotFrame(const std::string& scan_frame, BagPlan* plan) const;
   void SetMounts(BagPlan* plan) const;
@@ -52,7 +54,8 @@ class BagEvidence {
   BagPlan topics_;
   FrameTree frames_;
   std::vector<ClockEvidence> clocks_;                             ///< by stream
-  std::vector<std::map<std::string, ScannerEvidence>> scanners_;  ///< by frame
+  std::vector<std::map<std::string, ScannerEvidence>> scanners_;  ///< by frame, as below
+  std::vector<std::map<std::string, ClockEvidence>> scan_clocks_;
   std::optional<std::string> child_frame_;
   std::string imu_frame_;
   RangeLimitFinder ranges_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_log_writer.hpp"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -22,6 +23,11 @@ Eigen::Isometry3d InSpace(const Pose2& pose) {
   return transform;
 }
 
+// To the digits of a text log: the same drive is then the same in every kind of log.
+double Rounded(double value, double steps) { return std::round(value * steps) / steps; }
+constexpr double kMicro = 1e6;
+constexpr double kMilli = 1e3;
+
 class RosLogWriter final : public LogSink {
  public:
   explicit RosLogWriter(std::unique_ptr<BagWriter> bag) : bag_(std::move(bag)) {}
@@ -41,13 +47,16 @@ class RosLogWriter final : public LogSink {
   }
 
   void WriteReading(const PressureReading& reading) {
-    const RosFluidPressure pressure{{reading.stamp, kRobotFrame}, reading.pressure_pa};
+    const RosFluidPressure pressure{{reading.stamp, kRobotFrame},
+                                    Rounded(reading.pressure_pa, kMilli)};
     Put("/pressure", TopicKind::kPressure, reading.stamp,
         WriteFluidPressure(pressure, bag_->Encoding()));
   }
 
   void WriteReading(const AccelerationReading& reading) {
-    const RosImu imu{{reading.stamp, kRobotFrame}, reading.acceleration_in_robot};
+    const RosImu imu{{reading.stamp, kRobotFrame},
+                     reading.acceleration_in_robot.unaryExpr(
+                         [](double value) { return Rounded(value, kMicro); })};
     Put("/imu", TopicKind::kImu, reading.stamp, WriteImu(imu, bag_->Encoding()));
   }
 
@@ -73,7 +82,9 @@ class RosLogWriter final : public LogSink {
   }
 
   void WriteOdometryAt(double stamp, const Pose2& T_odom_robot) {
-    const Eigen::Isometry3d in_space = InSpace(T_odom_robot);
+    const Eigen::Isometry3d in_space =
+        InSpace({Rounded(T_odom_robot.x, kMicro), Rounded(T_odom_robot.y, kMicro),
+                 Rounded(T_odom_robot.theta, kMicro)});
     const RosHeader header{stamp, kOdometryFrame};
     Put("/odom", TopicKind::kOdometry, stamp,
         WriteOdometry({header, kRobotFrame, in_space}, bag_->Encoding()));

@@ -94,6 +94,7 @@ class RosBagPlan final : public LogPlan {
       throw InputError(path + ": " + WhatIsThereInsteadOfScans(bag.get()));
     }
     plan_ = LookAtBag(path, options, topics_, bag.get());
+    plan_.is_disordered = false;  // of the first pass, which takes the messages as they stand
     shelf_->PutBack(std::move(bag));
   }
 

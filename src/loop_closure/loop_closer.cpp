@@ -18,7 +18,7 @@ LoopCloser::LoopCloser(const LoopClosureOptions& options, BuildingMap& map,
       reference_(std::move(reference)),
       matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
       late_matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
-      validator_(options.validator),
+      validator_(Settled(options.validator, options.refine)),
       optimizer_(options.optimizer) {
   for (const Closure& closure : map.closures) {
     if (closure.reason == ClosureReason::kForbiddenByHand) {

@@ -28,14 +28,21 @@ int PlacesNeeded(const ValidatorOptions& options, const UncertainPose2& loop, do
 
 }  // namespace
 
-ValidatorOptions PaperRule() {
-  ValidatorOptions options;
+ValidatorOptions PaperRule(ValidatorOptions options) {
+  options.rule = ValidatorRule::kPaper;
   options.max_loop_trace = kNoLimit;
   options.tight_loop_trace = kNoLimit;
   options.sure_loop_trace = 0.0;
   options.places_needed = 0;
   options.max_contradiction = kNoLimit;
   return options;
+}
+
+ValidatorOptions Settled(const ValidatorOptions& options, bool laid_out_by_scans) {
+  if (options.rule == ValidatorRule::kPaper) return PaperRule(options);
+  ValidatorOptions settled = options;
+  if (!laid_out_by_scans) settled.max_loop_trace = settled.tight_loop_trace = kNoLimit;
+  return settled;
 }
 
 LoopValidator::LoopValidator(const ValidatorOptions& options) : options_(options) {}

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "masked_mapper/map/drives.hpp"
 #include "row_values.hpp"
 
 namespace masked_mapper {
@@ -85,5 +86,24 @@ class Linker {
 }  // namespace
 
 void LinkRows(std::int64_t version, BuildingMap& map) { Linker(version, map).Link(); }
+
+void CheckDrives(const BuildingMap& map) {
+  if (map.drives.size() < 2) return;
+  for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
+    const IndexRange nodes = NodesOfDrive(map, drive);
+    const IndexRange poses = PosesOfDrive(map, drive);
+    for (std::size_t i = poses.begin; i < poses.end; ++i) {
+      const auto node = static_cast<std::size_t>(map.trajectory[i].node_before);
+      if (node < nodes.begin || node >= nodes.end) {
+        Malformed("drives", "a pose at a node of another drive");
+      }
+    }
+  }
+  for (std::size_t i = 1; i < map.kept_scans.size(); ++i) {
+    if (map.kept_scans[i].trajectory_index <= map.kept_scans[i - 1].trajectory_index) {
+      Malformed("scans", "scans that do not follow each other");
+    }
+  }
+}
 
 }  // namespace masked_mapper

@@ -11,4 +11,7 @@ namespace masked_mapper {
 /// closure. Of a file before version 3 they are found. Throws DatabaseError.
 void LinkRows(std::int64_t version, BuildingMap& map);
 
+/// Of several drives each must keep to itself. Throws DatabaseError.
+void CheckDrives(const BuildingMap& map);
+
 }  // namespace masked_mapper

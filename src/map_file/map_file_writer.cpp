@@ -154,13 +154,12 @@ void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory, const Databa
 // Of poses whose stamp is not their log's own, but for the shift of their drive.
 void WriteLogStamps(const BuildingMap& result, const Database& database) {
   Statement insert(database, "INSERT INTO log_stamps VALUES (?,?)");
-  for (std::size_t drive = 0; drive < result.drives.size(); ++drive) {
-    const IndexRange poses = PosesOfDrive(result, drive);
-    for (std::size_t i = poses.begin; i < poses.end; ++i) {
-      const TrajectoryPose& pose = result.trajectory[i];
-      if (pose.log_stamp == pose.stamp - result.drives[drive].stamp_offset_s) continue;
-      insert.Bind(Id(i)).Bind(pose.log_stamp).Put();
-    }
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
+    const TrajectoryPose& pose = result.trajectory[i];
+    const double shift =
+        result.drives.empty() ? 0.0 : result.drives[DriveOfPose(result, i)].stamp_offset_s;
+    if (pose.log_stamp == pose.stamp - shift) continue;
+    insert.Bind(Id(i)).Bind(pose.log_stamp).Put();
   }
 }
 

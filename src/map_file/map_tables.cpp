@@ -307,22 +307,7 @@ class Reader {
       if (!follows) Malformed("drives", "drives that do not follow each other");
       map.drives.push_back(std::move(drive));
     }
-    if (map.drives.size() < 2) return;
-    for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
-      const IndexRange nodes = NodesOfDrive(map, drive);
-      const IndexRange poses = PosesOfDrive(map, drive);
-      for (std::size_t i = poses.begin; i < poses.end; ++i) {
-        const auto node = static_cast<std::size_t>(map.trajectory[i].node_before);
-        if (node < nodes.begin || node >= nodes.end) {
-          Malformed("drives", "a pose at a node of another drive");
-        }
-      }
-    }
-    for (std::size_t i = 1; i < map.kept_scans.size(); ++i) {
-      if (map.kept_scans[i].trajectory_index <= map.kept_scans[i - 1].trajectory_index) {
-        Malformed("scans", "scans that do not follow each other");
-      }
-    }
+    CheckDrives(map);
   }
 
   const Database& database_;

@@ -60,7 +60,8 @@ void Serialize(Archive& archive, FloorLevel& level) {
 
 template <class Archive>
 void Serialize(Archive& archive, FloorInterval& interval) {
-  archive(interval.start, interval.level, interval.in_transit, interval.travelled_m);
+  archive(interval.start, interval.level, interval.in_transit, interval.travelled_m,
+          interval.by.bits);
 }
 
 template <class Archive>

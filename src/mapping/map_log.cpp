@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "masked_mapper/joining/floor_joining.hpp"
+#include "masked_mapper/joining/visit_tying.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
@@ -31,6 +32,27 @@ void WarnOfTheLog(const std::string& path, const LogStatistics& log, BuildingMap
   if (log.empty_scans > 0) {
     warn(std::to_string(log.empty_scans) + " scans without a single return");
   }
+}
+
+std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStatistics& log) {
+  constexpr std::pair<FloorSource, const char*> kNames[] = {
+      {FloorSource::kLabels, "labels"},
+      {FloorSource::kPressure, "pressure"},
+      {FloorSource::kAcceleration, "acceleration"},
+      {FloorSource::kLidar, "lidar"}};
+  std::vector<TransitRecord> transits;
+  for (const FloorChange& change : ChangesOf(floors)) {
+    TransitRecord transit{std::max(change.t_out, log.first_stamp),
+                          std::min(change.t_in, log.last_stamp),
+                          change.height_m,
+                          change.sigma_m,
+                          {}};
+    for (const auto& [source, name] : kNames) {
+      if (change.by.Has(source)) transit.by.emplace_back(name);
+    }
+    transits.push_back(std::move(transit));
+  }
+  return transits;
 }
 
 // What the checkpoint keeps beside the mapper: the survey, so that the log is not surveyed again.
@@ -94,9 +116,11 @@ class LogDrive {
     result.seconds += spent_;
     result.seconds.read += read_seconds_;
     result.motion_source = settled_.motion.source;
+    result.transits = TransitsOf(survey_.floors, result.log);
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
+    TieVisits(settled_.closures, result);
     result.findings = survey_.findings;
     for (const SensorFinding& finding : survey_.findings) {
       result.warnings.push_back(path_ + ": " + TextOf(finding));

@@ -102,22 +102,8 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
     in_transit_ = false;
     last_scan_node_.reset();
     mask_->Restart();
-    if (!on_stairs_) motion_.RestartScans();
+    if (!on_stairs_) motion_.LeaveTransit();
   }
-}
-
-UncertainPose2 MaskedMapper::RideInCab(const UncertainPose2& motion) const {
-  if (options_.motion.source == MotionSource::kOdometry) return motion;
-  UncertainPose2 ride = motion;
-  const auto at_most = [&](double most, double variance) {
-    return std::min(1.0, most / std::sqrt(std::max(variance, 1e-18)));
-  };
-  const double position =
-      at_most(options_.nodes.ride_sigma_m, motion.covariance.topLeftCorner<2, 2>().trace());
-  const double heading = at_most(DegToRad(options_.nodes.ride_sigma_deg), motion.covariance(2, 2));
-  const Eigen::DiagonalMatrix<double, 3> scale(position, position, heading);
-  ride.covariance = scale * motion.covariance * scale;
-  return ride;
 }
 
 NodeId MaskedMapper::AddNode(double stamp, FloorId floor, EdgeKind kind, KeptScanId scan) {
@@ -134,9 +120,7 @@ NodeId MaskedMapper::AddNode(double stamp, FloorId floor, EdgeKind kind, KeptSca
   }
   const NodeId id = graph.AddNode(std::move(node));
   if (!is_first) {
-    UncertainPose2 motion = motion_.T_node_robot();
-    if (kind == EdgeKind::kFloorChange && !on_stairs_) motion = RideInCab(motion);
-    graph.AddEdge({id - 1, id, motion, kind});
+    graph.AddEdge({id - 1, id, motion_.T_node_robot(), kind});
   }
   motion_.StartNode();
   if (has_scan) {

@@ -6,17 +6,13 @@
 #include <cstddef>
 #include <optional>
 
+#include "cab_ride.hpp"
 #include "masked_mapper/geometry/median.hpp"
 
 namespace masked_mapper {
 namespace {
 
 constexpr double kGravity = 9.80665;  // m/s^2
-
-struct Vertical {
-  double stamp = 0.0;  ///< s
-  double value = 0.0;  ///< m/s^2 up
-};
 
 /// One push of the cab: samples [first, end).
 struct Pulse {
@@ -25,12 +21,17 @@ struct Pulse {
   double speed_change = 0.0;  ///< m/s
 };
 
-double Step(const std::vector<Vertical>& samples, std::size_t i) {
-  return std::min(samples[i].stamp - samples[i - 1].stamp, 1.0);  // a gap is no push
+/// A cab pushes softly; whoever takes the sensor in hand does not.
+bool IsRough(const std::vector<VerticalSample>& samples, const Pulse& pulse, double most) {
+  double changes = 0.0;
+  for (std::size_t i = pulse.first + 1; i < pulse.end; ++i) {
+    changes += std::abs(samples[i].value - samples[i - 1].value);
+  }
+  return changes > most * static_cast<double>(pulse.end - pulse.first);
 }
 
 /// Pulses among the samples [first, end), whose accelerations are above `zero`.
-std::vector<Pulse> FindPulses(const std::vector<Vertical>& samples, std::size_t first,
+std::vector<Pulse> FindPulses(const std::vector<VerticalSample>& samples, std::size_t first,
                               std::size_t end, double zero, double threshold,
                               const FloorAccelerationOptions& options) {
   const auto smooth = [&](std::size_t i) {
@@ -40,6 +41,7 @@ std::vector<Pulse> FindPulses(const std::vector<Vertical>& samples, std::size_t 
     for (std::size_t k = from; k < to; ++k) sum += samples[k].value - zero;
     return sum / static_cast<double>(to - from);
   };
+  constexpr double kMostRough = 2.5;  // of the threshold, from sample to sample
   std::vector<Pulse> pulses;
   for (std::size_t i = first; i < end;) {
     const double sign = smooth(i) < 0.0 ? -1.0 : 1.0;
@@ -54,7 +56,8 @@ std::vector<Pulse> FindPulses(const std::vector<Vertical>& samples, std::size_t 
       ++i;
       continue;
     }
-    if (samples[pulse.end - 1].stamp - samples[pulse.first].stamp >= options.pulse_s) {
+    if (samples[pulse.end - 1].stamp - samples[pulse.first].stamp >= options.pulse_s &&
+        !IsRough(samples, pulse, kMostRough * threshold)) {
       pulses.push_back(pulse);
     }
     i = pulse.end;
@@ -62,42 +65,8 @@ std::vector<Pulse> FindPulses(const std::vector<Vertical>& samples, std::size_t 
   return pulses;
 }
 
-struct Ride {
-  double start = 0.0;  ///< s
-  double end = 0.0;
-  double climb = 0.0;  ///< m
-  double sigma = 0.0;  ///< m
-};
-
-/// Speed and height from zero to zero speed: what is left of it at the end is a constant error of
-/// the acceleration.
-Ride Integrate(const std::vector<Vertical>& samples, std::size_t first, std::size_t last,
-               double zero, double noise) {
-  std::vector<double> speeds = {0.0};
-  double duration = 0.0;
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    const double mean = 0.5 * (samples[i - 1].value + samples[i].value) - zero;
-    speeds.push_back(speeds.back() + mean * Step(samples, i));
-    duration += Step(samples, i);
-  }
-  const double bias = duration > 0.0 ? speeds.back() / duration : 0.0;
-  Ride ride{samples[first].stamp, samples[last].stamp, 0.0, 0.0};
-  double elapsed = 0.0;
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    const double step = Step(samples, i);
-    const double before = speeds[i - first - 1] - bias * elapsed;
-    elapsed += step;
-    ride.climb += 0.5 * step * (before + speeds[i - first] - bias * elapsed);
-  }
-  // A bridge of white noise, some per cent of scale, and what no model has.
-  const double period = duration / static_cast<double>(std::max<std::size_t>(last - first, 1));
-  const double bridge = noise * std::sqrt(period * duration * duration * duration / 12.0);
-  ride.sigma = std::sqrt(bridge * bridge + std::pow(0.02 * ride.climb, 2) + 0.1 * 0.1);
-  return ride;
-}
-
 /// Deviation of one sample's noise, from differences of neighbours.
-double NoiseOf(const std::vector<Vertical>& samples, std::size_t first, std::size_t end) {
+double NoiseOf(const std::vector<VerticalSample>& samples, std::size_t first, std::size_t end) {
   std::vector<double> differences;
   for (std::size_t i = first + 1; i < end; ++i) {
     differences.push_back(std::abs(samples[i].value - samples[i - 1].value));
@@ -106,9 +75,9 @@ double NoiseOf(const std::vector<Vertical>& samples, std::size_t first, std::siz
 }
 
 /// Rides among samples [first, end), through which the robot stays in one place.
-std::vector<Ride> RidesOfStay(const std::vector<Vertical>& samples, std::size_t first,
-                              std::size_t end, const FloorAccelerationOptions& options) {
-  std::vector<Ride> rides;
+std::vector<CabRide> RidesOfStay(const std::vector<VerticalSample>& samples, std::size_t first,
+                                 std::size_t end, const FloorAccelerationOptions& options) {
+  std::vector<CabRide> rides;
   if (end - first < 10) return rides;
   const double noise = NoiseOf(samples, first, end);
   std::vector<double> values;
@@ -138,11 +107,11 @@ std::vector<Ride> RidesOfStay(const std::vector<Vertical>& samples, std::size_t 
     rides.push_back(Integrate(samples, from, to, zero, noise));
     k = *last + 1;
   }
-  return rides;
+  return Unfiltered(samples, end, rides, zero, noise, options.longest_ride_s);
 }
 
-FloorTransit TransitOf(const Ride& ride) {
-  return {ride.start, 0.5 * (ride.start + ride.end), ride.end, ride.climb, ride.sigma};
+FloorTransit TransitOf(const CabRide& ride) {
+  return {ride.start, 0.5 * (ride.start + ride.end), ride.end, ride.climb, ride.sigma, {}};
 }
 
 /// Rides of a cab that the robot does not leave make one transit.
@@ -164,19 +133,21 @@ void Append(const FloorTransit& transit, std::vector<FloorTransit>& transits) {
   }
 }
 
-std::vector<FloorTransit> TransitsOf(const std::vector<Vertical>& samples, const WheelTrack& track,
+std::vector<FloorTransit> TransitsOf(const std::vector<VerticalSample>& samples,
+                                     const WheelTrack& track,
                                      const FloorAccelerationOptions& options) {
   std::vector<TimeSpan> stays = {{samples.front().stamp, samples.back().stamp}};
   if (track.Travels()) stays = track.Stays(options.cab_radius, options.least_stay_s);
   std::vector<FloorTransit> transits;
   for (const TimeSpan& stay : stays) {
-    const auto is_before = [](const Vertical& sample, double stamp) {
+    const auto is_before = [](const VerticalSample& sample, double stamp) {
       return sample.stamp < stamp;
     };
     const auto first = std::lower_bound(samples.begin(), samples.end(), stay.start, is_before);
     const auto end = std::lower_bound(first, samples.end(), stay.end, is_before);
-    for (const Ride& ride : RidesOfStay(samples, static_cast<std::size_t>(first - samples.begin()),
-                                        static_cast<std::size_t>(end - samples.begin()), options)) {
+    for (const CabRide& ride :
+         RidesOfStay(samples, static_cast<std::size_t>(first - samples.begin()),
+                     static_cast<std::size_t>(end - samples.begin()), options)) {
       FloorTransit transit = TransitOf(ride);
       if (track.Travels()) {
         const TimeSpan whole = track.StayAround(transit.middle, options.cab_radius);
@@ -225,6 +196,13 @@ void AccelerationTrack::Observe(const AccelerationReading& reading) {
   ++count_;
 }
 
+std::vector<double> AccelerationTrack::Stamps() const {
+  std::vector<double> stamps;
+  for (const Spell& spell : spells_) stamps.push_back(spell.stamp);
+  if (count_ > 0) stamps.push_back(last_stamp_);
+  return stamps;
+}
+
 AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
                                                       const StoreyOptions& storeys) const {
   Rides result;
@@ -241,7 +219,7 @@ AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
   if (scale == 0.0) return result;
   result.usable = true;
   up.normalize();
-  std::vector<Vertical> samples;
+  std::vector<VerticalSample> samples;
   samples.reserve(spells.size());
   for (const Spell& spell : spells) {
     samples.push_back({spell.stamp, scale * up.dot(spell.acceleration_in_robot)});

@@ -212,14 +212,17 @@ std::vector<FloorInterval> IntervalsOf(const std::vector<Stay>& stays,
     }
     start = span.end;
     if (span.Duration() <= 0.0) continue;
-    intervals.push_back({span.start, left, true});
+    FloorSources by;
+    by.Add(FloorSource::kLabels);
+    for (const FloorTransit& transit : change.transits) by.Add(transit.by);
+    intervals.push_back({span.start, left, true, 0.0, by});
     if (left == reached) continue;
     double middle = 0.5 * (span.start + span.end);
     if (!change.transits.empty()) {
       middle = 0.5 * (change.transits.front().middle + change.transits.back().middle);
       middle = std::clamp(middle, span.start, span.end);
     }
-    intervals.push_back({middle, reached, true});
+    intervals.push_back({middle, reached, true, 0.0, by});
   }
   intervals.push_back({start, stays.back().level, false});
   if (stays.back().span.end < kInfinity) {

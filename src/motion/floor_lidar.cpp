@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
+#include "door_evidence.hpp"
 #include "masked_mapper/sensor/beam_sweep.hpp"
 
 namespace masked_mapper {
@@ -12,24 +12,6 @@ namespace {
 
 constexpr std::size_t kFewestBeams = 30;
 constexpr std::size_t kMostKeyScans = 60;
-
-/// Beams on either side of the direction to a point in the laser frame: [first, end).
-struct BeamSpan {
-  std::size_t first = 0;
-  std::size_t end = 0;
-};
-std::optional<BeamSpan> BeamsTowards(const LaserScan& scan, const Eigen::Vector2d& point_in_laser,
-                                     double half_angle) {
-  const double angle = std::atan2(point_in_laser.y(), point_in_laser.x());
-  const double sign = scan.angle_step < 0.0 ? -1.0 : 1.0;
-  double from_first = sign * WrapAngle(angle - scan.first_angle);
-  const double step = std::abs(scan.angle_step);
-  if (from_first < -0.5 * step) from_first += 2.0 * kPi;
-  const double low = std::ceil((from_first - half_angle) / step);
-  const double high = std::floor((from_first + half_angle) / step);
-  if (!(low >= 0.0 && high < static_cast<double>(scan.size()) && low <= high)) return std::nullopt;
-  return BeamSpan{static_cast<std::size_t>(low), static_cast<std::size_t>(high) + 1};
-}
 
 /// What one scan says about a wall at a point.
 enum class View { kNone, kAgrees, kContradicts };
@@ -85,24 +67,6 @@ Counts Compare(const std::deque<PlacedScan>& walls, const std::deque<PlacedScan>
   return counts;
 }
 
-/// Whether the robot saw a wall where it then drove straight in.
-bool CameThroughWall(const std::deque<PlacedScan>& way_in, const Eigen::Vector2d& cab_in_odom,
-                     const FloorLidarOptions& options) {
-  constexpr double kStraight = 0.3;  // m beside the line
-  for (std::size_t i = way_in.size(); i-- > 0;) {
-    const Eigen::Vector2d view = way_in[i].T_odom_robot.Translation();
-    const Eigen::Vector2d way = cab_in_odom - view;
-    if (way.norm() > 2.0 * options.door_distance_m) return false;
-    for (std::size_t k = i + 1; k < way_in.size(); ++k) {
-      const Eigen::Vector2d between = way_in[k].T_odom_robot.Translation() - view;
-      const double aside = std::abs(way.x() * between.y() - way.y() * between.x());
-      if (aside > kStraight * way.norm()) return false;
-    }
-    if (way.norm() > 1.0 && SeesWallBefore(way_in[i], cab_in_odom)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 bool IsClosedBox(const LaserScan& scan, const FloorLidarOptions& options) {
@@ -133,22 +97,6 @@ std::optional<double> SceneAgreement(const std::deque<PlacedScan>& way_in,
   const int all = alike + in.different + out.different;
   if (all < kFewest) return std::nullopt;
   return static_cast<double>(alike) / static_cast<double>(all);
-}
-
-bool SeesWallBefore(const PlacedScan& view, const Eigen::Vector2d& point_in_odom) {
-  constexpr double kBefore = 0.4;     // m
-  constexpr double kMostLeaks = 0.1;  // of the beams
-  const double half_angle = DegToRad(6.0);
-  const Eigen::Vector2d point_in_laser =
-      Inverse(view.T_odom_robot * view.scan.T_robot_laser) * point_in_odom;
-  const std::optional<BeamSpan> beams = BeamsTowards(view.scan, point_in_laser, half_angle);
-  if (!beams) return false;
-  const double nearest = point_in_laser.norm() - kBefore;
-  double leaks = 0.0;
-  for (std::size_t i = beams->first; i < beams->end; ++i) {
-    leaks += !(static_cast<double>(view.scan.ranges[i]) < nearest);
-  }
-  return leaks <= kMostLeaks * static_cast<double>(beams->end - beams->first);
 }
 
 void LidarTrack::Observe(const LaserScan& scan) {
@@ -213,20 +161,16 @@ void LidarTrack::ForgetFarWay() {
   }
 }
 
-bool LidarTrack::IsRide() const {
+bool LidarTrack::IsRide() const {  // DBG
   const Pose2& T_odom_cab = closure_->T_odom_robot;
   const Eigen::Vector2d cab_in_odom = T_odom_cab.Translation();
-  const bool came = CameThroughWall(way_in_, cab_in_odom, options_);
-  const auto outside = std::find_if(way_.begin(), way_.end(), [&](const PlacedScan& placed) {
-    return Distance(placed.T_odom_robot, T_odom_cab) > options_.door_distance_m;
-  });
-  if (outside == way_.end()) return came;
-  const Eigen::Vector2d outside_in_odom = outside->T_odom_robot.Translation();
-  const bool left = std::any_of(walls_.begin(), walls_.end(), [&](const PlacedScan& view) {
-    return SeesWallBefore(view, outside_in_odom);
-  });
+  if (CameThroughWall(way_in_, cab_in_odom, options_.door_distance_m) ||
+      LeftThroughWall(walls_, way_, cab_in_odom, options_.door_distance_m) ||
+      SawDoorMove(walls_, way_in_) || SawDoorMove(walls_, way_)) {
+    return true;
+  }
   const std::optional<double> agreement = SceneAgreement(way_in_, way_, T_odom_cab, options_);
-  return came || left || (agreement && *agreement <= options_.other_scene_share);
+  return agreement && *agreement <= options_.other_scene_share;
 }
 
 void LidarTrack::EndClosure() {

@@ -2,11 +2,17 @@
 #include "masked_mapper/motion/floor_timeline.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
 
 namespace masked_mapper {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 const FloorInterval& FloorTimeline::At(double stamp) const {
   const auto after = std::upper_bound(
@@ -27,11 +33,35 @@ void NoteTravel(const std::vector<TravelledWay>& way, FloorTimeline& timeline) {
     if (!intervals[first].in_transit) continue;
     std::size_t end = first + 1;
     while (end < intervals.size() && intervals[end].in_transit) ++end;
-    const double last_stamp =
-        end < intervals.size() ? intervals[end].start : std::numeric_limits<double>::infinity();
+    const double last_stamp = end < intervals.size() ? intervals[end].start : kInfinity;
     const double travelled_m = travelled_by(last_stamp) - travelled_by(intervals[first].start);
     for (; first < end; ++first) intervals[first].travelled_m = travelled_m;
   }
+}
+
+std::vector<FloorChange> ChangesOf(const FloorTimeline& timeline) {
+  const std::vector<FloorInterval>& intervals = timeline.intervals;
+  std::vector<FloorChange> changes;
+  for (std::size_t first = 0; first < intervals.size(); ++first) {
+    if (!intervals[first].in_transit) continue;
+    FloorChange change;
+    change.t_out = first == 0 ? -kInfinity : intervals[first].start;
+    change.from = first == 0 ? intervals[first].level : intervals[first - 1].level;
+    for (; first < intervals.size() && intervals[first].in_transit; ++first) {
+      change.to = intervals[first].level;
+      change.by.Add(intervals[first].by);
+    }
+    change.t_in = first < intervals.size() ? intervals[first].start : kInfinity;
+    if (first < intervals.size()) change.to = intervals[first].level;
+    if (change.from != change.to) {
+      const FloorLevel& from = timeline.levels[change.from];
+      const FloorLevel& to = timeline.levels[change.to];
+      change.height_m = to.elevation - from.elevation;
+      change.sigma_m = std::hypot(from.elevation_sigma, to.elevation_sigma);
+    }
+    changes.push_back(change);
+  }
+  return changes;
 }
 
 std::vector<std::string> FloorNames(const std::vector<FloorLevel>& levels) {

@@ -2,10 +2,17 @@
 #include "masked_mapper/motion/floor_tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
 namespace masked_mapper {
+namespace {
+
+constexpr double kLongGap = 15.0;  // s without a reading: a ride may have been in between
+constexpr double kLate = 5.0;      // s by which a sensor may begin after a stay, or end before it
+
+}  // namespace
 
 FloorTracker::FloorTracker(const FloorOptions& options)
     : options_(options), acceleration_(options.acceleration), lidar_(options.lidar) {}
@@ -17,15 +24,15 @@ void FloorTracker::UseLabels(const std::vector<FloorLabel>& labels) {
 }
 
 void FloorTracker::Observe(const Observation& observation) {
+  NoteStamp(Stamp(observation));
   if (const auto* odometry = std::get_if<OdometryReading>(&observation)) {
     track_.Observe(*odometry);
     if (Uses(FloorSource::kLidar)) lidar_.Observe(*odometry);
   } else if (const auto* scan = std::get_if<LaserScan>(&observation)) {
-    has_scans_ = true;
     if (scan->T_odom_robot) track_.Observe({scan->stamp, *scan->T_odom_robot});
     if (Uses(FloorSource::kLidar)) lidar_.Observe(*scan);
   } else if (const auto* pressure = std::get_if<PressureReading>(&observation)) {
-    pressure_.push_back(*pressure);
+    pressure_.Observe(*pressure);
   } else if (const auto* acceleration = std::get_if<AccelerationReading>(&observation)) {
     acceleration_.Observe(*acceleration);
   } else if (const auto* label = std::get_if<FloorLabel>(&observation)) {
@@ -41,58 +48,107 @@ bool FloorTracker::HasLabels() const {
                      [](const FloorLabel& label) { return label.label != "-"; });
 }
 
-bool FloorTracker::MayHaveRidden() const {
-  return !track_.Travels() ||
-         !track_.Stays(options_.lidar.cab_radius, options_.lidar.closed_s).empty();
+void FloorTracker::NoteStamp(double stamp) {
+  if (!std::isfinite(stamp)) return;
+  log_ = has_stamps_ ? TimeSpan{std::min(log_.start, stamp), std::max(log_.end, stamp)}
+                     : TimeSpan{stamp, stamp};
+  has_stamps_ = true;
 }
 
-FloorTimeline FloorTracker::FinishByClimbs(FloorSource source,
-                                           const std::vector<FloorTransit>& transits) {
-  source_ = source;
-  return TimelineOfTransits(transits, options_.storeys);
+bool FloorTracker::ScansMayTell(const Evidence& evidence) const {
+  if (!Uses(FloorSource::kLidar) || !lidar_.HasRanges()) return false;
+  if (!track_.Travels()) return evidence.sensors.empty();
+  const std::vector<TimeSpan> stays =
+      track_.Stays(options_.lidar.cab_radius, options_.lidar.closed_s);
+  return std::any_of(stays.begin(), stays.end(),
+                     [&](const TimeSpan& stay) { return !IsHeard(evidence, stay); });
+}
+
+bool FloorTracker::IsHeard(const Evidence& evidence, const TimeSpan& stay) const {
+  const double start = std::max(stay.start, log_.start);
+  const double end = std::min(stay.end, log_.end);
+  return std::any_of(
+      evidence.sensors.begin(), evidence.sensors.end(), [&](const FloorEvidence& sensor) {
+        return std::any_of(sensor.heard.begin(), sensor.heard.end(), [&](const TimeSpan& span) {
+          return span.start <= start + kLate && end <= span.end + kLate;
+        });
+      });
+}
+
+// A barometer needs both sides of a ride. One that stops in a ride, or begins in one, does not end
+// the log: the ride ends with the robot's stay, and nobody knows how high it went.
+void FloorTracker::AddPressure(Evidence& evidence) const {
+  const PressureHeights heights = pressure_.Heights(options_.pressure.heights);
+  evidence.warnings.insert(evidence.warnings.end(), heights.warnings.begin(),
+                           heights.warnings.end());
+  if (heights.samples.empty()) return;
+  FloorEvidence pressure;
+  pressure.transits = TransitsOfPressure(heights, track_, options_.pressure, options_.storeys);
+  std::vector<double> stamps;
+  for (const HeightSample& sample : heights.samples) stamps.push_back(sample.stamp);
+  for (FloorTransit& transit : pressure.transits) {
+    transit.by.Add(FloorSource::kPressure);
+    const bool is_cut_early = std::isinf(transit.start) && stamps.front() > log_.start + kLongGap;
+    const bool is_cut_late = std::isinf(transit.end) && stamps.back() < log_.end - kLongGap;
+    if (!is_cut_early && !is_cut_late) continue;
+    const double stamp = is_cut_early ? stamps.front() : stamps.back();
+    const TimeSpan stay = track_.StayAround(stamp, options_.pressure.cab_radius);
+    transit.start = is_cut_early ? std::min(stay.start, stamp) : transit.start;
+    transit.end = is_cut_late ? std::max(stay.end, stamp) : transit.end;
+    transit.climb.reset();
+  }
+  pressure.heard = SpansOf(stamps, kLongGap);
+  evidence.sensors.push_back(std::move(pressure));
+  evidence.sources.push_back(FloorSource::kPressure);
+}
+
+void FloorTracker::AddAcceleration(Evidence& evidence) const {
+  AccelerationTrack::Rides rides = acceleration_.FindRides(track_, options_.storeys);
+  evidence.warnings.insert(evidence.warnings.end(), rides.warnings.begin(), rides.warnings.end());
+  if (!rides.usable) return;
+  for (FloorTransit& transit : rides.transits) transit.by.Add(FloorSource::kAcceleration);
+  evidence.sensors.push_back(
+      {std::move(rides.transits), SpansOf(acceleration_.Stamps(), kLongGap)});
+  evidence.sources.push_back(FloorSource::kAcceleration);
+}
+
+FloorTracker::Evidence FloorTracker::Gather() const {
+  Evidence evidence;
+  const bool takes_any = Uses(FloorSource::kLabels);  // labels take their heights from sensors
+  if (takes_any || options_.source == FloorSource::kPressure) AddPressure(evidence);
+  if (takes_any || options_.source == FloorSource::kAcceleration) AddAcceleration(evidence);
+  return evidence;
 }
 
 FloorTimeline FloorTracker::Finish() {
   warnings_.clear();
   source_ = FloorSource::kNone;
   if (options_.source == FloorSource::kNone) return {};
-
-  // What sensors say of climbs also gives labels their heights.
-  std::vector<FloorTransit> transits;
-  std::string sensor;
-  const bool takes_any = Uses(FloorSource::kLabels);
-  if (takes_any || options_.source == FloorSource::kPressure) {
-    const PressureHeights heights = HeightsOfPressure(pressure_, options_.pressure.heights);
-    warnings_.insert(warnings_.end(), heights.warnings.begin(), heights.warnings.end());
-    if (!heights.samples.empty()) {
-      sensor = "pressure";
-      transits = TransitsOfPressure(heights, track_, options_.pressure, options_.storeys);
-    }
-  }
-  if (sensor.empty() && (takes_any || options_.source == FloorSource::kAcceleration)) {
-    AccelerationTrack::Rides rides = acceleration_.FindRides(track_, options_.storeys);
-    warnings_.insert(warnings_.end(), rides.warnings.begin(), rides.warnings.end());
-    if (rides.usable) {
-      sensor = "acceleration";
-      transits = std::move(rides.transits);
-    }
-  }
-
+  Evidence evidence = Gather();
+  warnings_ = evidence.warnings;
   if (HasLabels()) {
     source_ = FloorSource::kLabels;
-    LabelledTimeline labelled =
-        TimelineOfLabels(labels_, transits, sensor, track_, options_.labels, options_.storeys);
+    const std::string sensor = evidence.sources.empty() ? ""
+                               : evidence.sources.front() == FloorSource::kPressure
+                                   ? "pressure"
+                                   : "acceleration";
+    LabelledTimeline labelled = TimelineOfLabels(labels_, Fused(evidence.sensors), sensor, track_,
+                                                 options_.labels, options_.storeys);
     warnings_.insert(warnings_.end(), labelled.warnings.begin(), labelled.warnings.end());
     return std::move(labelled.timeline);
   }
-  if (options_.source != FloorSource::kLabels && sensor == "pressure") {
-    return FinishByClimbs(FloorSource::kPressure, transits);
-  }
-  if (options_.source != FloorSource::kLabels && sensor == "acceleration") {
-    return FinishByClimbs(FloorSource::kAcceleration, transits);
-  }
-  if (Uses(FloorSource::kLidar) && lidar_.HasRanges() && MayHaveRidden()) {
-    return FinishByClimbs(FloorSource::kLidar, lidar_.FindRides(track_));
+  if (options_.source != FloorSource::kLabels) {
+    if (ScansMayTell(evidence)) {
+      LidarTrack lidar = lidar_;
+      FloorEvidence scans{lidar.FindRides(track_), {}};
+      for (FloorTransit& transit : scans.transits) transit.by.Add(FloorSource::kLidar);
+      evidence.sensors.push_back(std::move(scans));
+      evidence.sources.push_back(FloorSource::kLidar);
+    }
+    if (!evidence.sources.empty()) {
+      source_ = evidence.sources.front();
+      return TimelineOfTransits(Fused(evidence.sensors), options_.storeys);
+    }
   }
   if (options_.source != FloorSource::kAuto) {
     warnings_.emplace_back(

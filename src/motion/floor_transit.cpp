@@ -179,21 +179,22 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
     timeline.levels.push_back(level);
   }
   timeline.intervals.clear();
-  if (starts_in_transit) timeline.intervals.push_back({-kInfinity, 0, true});
+  if (starts_in_transit) timeline.intervals.push_back({-kInfinity, 0, true, 0.0, all.front().by});
   timeline.intervals.push_back({first_arrival, 0, false});
   for (std::size_t k = 0; k < transits.size(); ++k) {
     const FloorTransit& transit = transits[k];
     const std::size_t left = assignment.level_of_spell[k];
     const std::size_t reached = assignment.level_of_spell[k + 1];
-    timeline.intervals.push_back({transit.start, left, true});
+    timeline.intervals.push_back({transit.start, left, true, 0.0, transit.by});
     if (left != reached) {
       const double middle = std::clamp(transit.middle, transit.start, transit.end);
-      timeline.intervals.push_back({middle, reached, true});
+      timeline.intervals.push_back({middle, reached, true, 0.0, transit.by});
     }
     timeline.intervals.push_back({transit.end, reached, false});
   }
   if (ends_in_transit) {
-    timeline.intervals.push_back({last_departure, assignment.level_of_spell.back(), true});
+    timeline.intervals.push_back(
+        {last_departure, assignment.level_of_spell.back(), true, 0.0, all.back().by});
   }
   return timeline;
 }

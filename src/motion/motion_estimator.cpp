@@ -27,11 +27,17 @@ void MotionEstimator::RestartScans() {
   wheel_noise_.Restart();
 }
 
+void MotionEstimator::LeaveTransit() {
+  in_transit_ = false;
+  scan_odometry_.LeaveTransit();
+  wheel_noise_.Restart();
+}
+
 // What was seen of the cab on the way into it stays: a map begun anew is as good as its first scan,
 // and the robot may turn at once.
 void MotionEstimator::EnterTransit() {
   in_transit_ = true;
-  scan_odometry_.SetReach(options_.scans.transit_reach_m);
+  scan_odometry_.EnterTransit();
   wheel_noise_.Restart();
 }
 

@@ -29,34 +29,18 @@ double PascalPerMetre(double median_pa, double at_sea_level) {
 }
 
 /// Spells of a second, or shorter where enough readings fall into less.
-double SpellDuration(const std::vector<HeightSample>& samples) {
+double SpellDuration(const std::vector<PressureReading>& readings) {
   std::vector<double> periods;
-  periods.reserve(samples.size());
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    periods.push_back(samples[i].stamp - samples[i - 1].stamp);
+  periods.reserve(readings.size());
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    periods.push_back(readings[i].stamp - readings[i - 1].stamp);
   }
-  return std::clamp(4.0 * Median(std::move(periods)), 0.4, 1.0);
+  return periods.empty() ? 1.0 : std::clamp(4.0 * Median(std::move(periods)), 0.4, 1.0);
 }
 
-std::vector<HeightSample> MediansOfSpells(const std::vector<HeightSample>& samples) {
-  const double duration = SpellDuration(samples);
-  std::vector<HeightSample> spells;
-  std::vector<double> heights;
-  for (std::size_t i = 0; i < samples.size();) {
-    heights.clear();
-    double stamps = 0.0;  // from the first, to lose no digits
-    std::size_t j = i;
-    for (; j < samples.size() && samples[j].stamp < samples[i].stamp + duration; ++j) {
-      heights.push_back(samples[j].height);
-      stamps += samples[j].stamp - samples[i].stamp;
-    }
-    std::sort(heights.begin(), heights.end());
-    const double median = 0.5 * (heights[(heights.size() - 1) / 2] + heights[heights.size() / 2]);
-    spells.push_back({samples[i].stamp + stamps / static_cast<double>(heights.size()), median});
-    i = j;
-  }
-  return spells;
-}
+constexpr double kMost = 1e6;                  // of a reading; no unit makes air of more
+constexpr std::size_t kToTellTheRate = 256;    // readings
+constexpr std::size_t kMostOfASpell = 10'000;  // readings, whatever their stamps say
 
 /// Deviation of the samples' noise, from second differences, which neither weather nor most of a
 /// ride reaches.
@@ -72,7 +56,8 @@ double NoiseOf(const std::vector<HeightSample>& samples) {
 }
 
 /// A sample, or two in a row, far from the three or more around it is a spike, and is put among
-/// them.
+/// them. At either end of the drive it must be far from its neighbour as well: heights that move
+/// there are of a ride that the log cuts.
 std::vector<HeightSample> WithoutSpikes(const std::vector<HeightSample>& samples,
                                         double threshold) {
   constexpr std::size_t kAround = 5;
@@ -82,60 +67,125 @@ std::vector<HeightSample> WithoutSpikes(const std::vector<HeightSample>& samples
     std::array<double, kAround> around;
     for (std::size_t k = 0; k < kAround; ++k) around[k] = samples[first + k].height;
     std::sort(around.begin(), around.end());
-    if (std::abs(samples[i].height - around[2]) > threshold) kept[i].height = around[2];
+    const auto is_far_from = [&](double height) {
+      return std::abs(samples[i].height - height) > threshold;
+    };
+    const bool is_first = i < 2;
+    const bool is_last = i + 2 >= samples.size();
+    if (is_first && !is_far_from(samples[i + 1].height)) continue;
+    if (is_last && !is_far_from(samples[i - 1].height)) continue;
+    if (is_far_from(around[2])) kept[i].height = around[2];
   }
   return kept;
 }
 
+/// The factor that makes pascals of readings around `median`; 0, with a warning, if none does.
+double UnitOf(double lowest, double highest, double median, std::vector<std::string>& warnings) {
+  if (lowest == highest) {
+    warnings.push_back("pressure is constantly " + ShortText(lowest) + ": left out");
+    return 0.0;
+  }
+  const double pa_per_unit = PascalPerUnit(median);
+  if (pa_per_unit == 0.0) {
+    warnings.push_back("pressure around " + ShortText(median) + " is none of air: left out");
+  } else if (pa_per_unit != 1.0) {
+    warnings.push_back("pressure around " + ShortText(median) + " is taken as " +
+                       (pa_per_unit == 100.0 ? "hectopascals" : "kilopascals"));
+  }
+  return pa_per_unit;
+}
+
 }  // namespace
 
-PressureHeights HeightsOfPressure(const std::vector<PressureReading>& readings,
-                                  const PressureHeightOptions& options) {
-  PressureHeights result;
-  if (readings.empty()) return result;
-  std::vector<double> values;
-  for (const PressureReading& reading : readings) {
-    if (reading.pressure_pa > 0.0 && std::isfinite(reading.pressure_pa)) {
-      values.push_back(reading.pressure_pa);
-    }
+void PressureTrack::Observe(const PressureReading& reading) {
+  ++observed_;
+  const bool is_usable = reading.pressure_pa > 0.0 && reading.pressure_pa <= kMost &&
+                         std::isfinite(reading.stamp) &&
+                         (current_.empty() || reading.stamp >= current_.back().stamp);
+  if (!is_usable) {
+    ++refused_;
+    return;
   }
-  if (values.empty()) {
+  lowest_ = current_.empty() && spells_.empty() ? reading.pressure_pa
+                                                : std::min(lowest_, reading.pressure_pa);
+  highest_ = std::max(highest_, reading.pressure_pa);
+  if (duration_s_ > 0.0) {
+    Thin(reading);
+  } else {
+    current_.push_back(reading);
+    if (current_.size() == kToTellTheRate) SettleDuration();
+  }
+}
+
+void PressureTrack::SettleDuration() {
+  duration_s_ = SpellDuration(current_);
+  std::vector<PressureReading> readings;
+  readings.swap(current_);
+  for (const PressureReading& reading : readings) Thin(reading);
+}
+
+void PressureTrack::Thin(const PressureReading& reading) {
+  if (!current_.empty() &&
+      (reading.stamp >= current_.front().stamp + duration_s_ || current_.size() == kMostOfASpell)) {
+    spells_.push_back(SpellOf(current_));
+    current_.clear();
+  }
+  current_.push_back(reading);
+}
+
+PressureTrack::Spell PressureTrack::SpellOf(const std::vector<PressureReading>& readings) {
+  std::vector<double> pressures;
+  double stamps = 0.0;  // from the first, to lose no digits
+  for (const PressureReading& reading : readings) {
+    pressures.push_back(reading.pressure_pa);
+    stamps += reading.stamp - readings.front().stamp;
+  }
+  std::sort(pressures.begin(), pressures.end());
+  const std::size_t count = pressures.size();
+  return {readings.front().stamp + stamps / static_cast<double>(count),
+          0.5 * (pressures[(count - 1) / 2] + pressures[count / 2]), pressures.front(),
+          pressures.back(), count};
+}
+
+PressureHeights PressureTrack::Heights(const PressureHeightOptions& options) const {
+  PressureHeights result;
+  if (observed_ == 0) return result;
+  PressureTrack all = *this;
+  if (all.duration_s_ == 0.0) all.SettleDuration();
+  if (all.current_.empty()) {
     result.warnings.emplace_back("pressure is constantly 0: left out");
     return result;
   }
-  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
-  if (*lowest == *highest) {
-    result.warnings.push_back("pressure is constantly " + ShortText(*lowest) + ": left out");
-    return result;
-  }
-  const double median = Median(values);
-  const double pa_per_unit = PascalPerUnit(median);
-  if (pa_per_unit == 0.0) {
-    result.warnings.push_back("pressure around " + ShortText(median) + " is none of air: left out");
-    return result;
-  }
-  if (pa_per_unit != 1.0) {
-    result.warnings.push_back("pressure around " + ShortText(median) + " is taken as " +
-                              (pa_per_unit == 100.0 ? "hectopascals" : "kilopascals"));
-  }
+  all.spells_.push_back(SpellOf(all.current_));
+  std::vector<double> pressures;
+  for (const Spell& spell : all.spells_) pressures.push_back(spell.pressure);
+  const double median = Median(std::move(pressures));
+  const double pa_per_unit = UnitOf(lowest_, highest_, median, result.warnings);
+  if (pa_per_unit == 0.0) return result;
   const double units_per_m =
       PascalPerMetre(median * pa_per_unit, options.pressure_pa_per_m) / pa_per_unit;
-  std::vector<HeightSample> samples;
-  samples.reserve(values.size());
-  for (const PressureReading& reading : readings) {
-    const double height = (median - reading.pressure_pa) / units_per_m;
-    const bool is_in_order = samples.empty() || reading.stamp >= samples.back().stamp;
-    if (std::isfinite(reading.stamp) && is_in_order && std::abs(height) <= options.max_height) {
-      samples.push_back({reading.stamp, height});
+  std::size_t left_out = refused_;
+  for (const Spell& spell : all.spells_) {
+    const auto is_air = [&](double pressure) {
+      return std::abs(median - pressure) / units_per_m <= options.max_height;
+    };
+    if (is_air(spell.pressure)) {
+      result.samples.push_back({spell.stamp, (median - spell.pressure) / units_per_m});
+      left_out += (is_air(spell.lowest) ? 0 : 1) + (is_air(spell.highest) ? 0 : 1);
+    } else {
+      left_out += spell.readings;
     }
   }
-  if (samples.size() < readings.size()) {
-    result.warnings.push_back(std::to_string(readings.size() - samples.size()) + " of " +
-                              std::to_string(readings.size()) +
+  if (left_out > 0) {
+    // Of a spell with a sound median only its extremes are known.
+    result.warnings.push_back("at least " + std::to_string(left_out) + " of " +
+                              std::to_string(observed_) +
                               " pressure readings are none of air: left out");
   }
-  if (samples.size() < 2) return result;
-  result.samples = MediansOfSpells(samples);
+  if (observed_ - left_out < 2) {
+    result.samples.clear();
+    return result;
+  }
   result.samples =
       WithoutSpikes(result.samples, std::max(options.spike_height, 6.0 * NoiseOf(result.samples)));
   result.sigma = NoiseOf(result.samples);

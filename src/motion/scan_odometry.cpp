@@ -27,14 +27,30 @@ ScanPoints::ConstPtr PointsWithin(const ScanPoints::ConstPtr& points_in_robot, d
 
 constexpr double kMapMargin = 1.0;  // m; more than a robot moves from one keyframe to the next
 
+/// Travel after a transit through which a door may still open.
+constexpr double kSuspected = 3.0;  // m
+
+/// How far off a match at one pose may be where the scene supports it, beside what wheels and walls
+/// leave open: cells, people, a door on its way.
+constexpr double kMatchSigma = 0.02;    // m
+constexpr double kMatchSigmaDeg = 0.3;  // deg
+
+constexpr double kSceneSigma = 0.05;  // m, to tell the same scene from another one
+
+constexpr double kSameScene = 0.7;  // of the points near the robot agree: surely the same scene
+
 constexpr double kMostChi2 = 16.0;  // of three degrees of freedom: one in a thousand
 
 constexpr int kMostLost = 5;  // scans in a row that agree with nothing: this is another place
 
-double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& information) {
+/// Of a match against where the wheels put the robot.
+double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& expected_covariance) {
+  Eigen::Matrix3d covariance = expected_covariance;
+  covariance.diagonal() += Eigen::Vector3d(kMatchSigma * kMatchSigma, kMatchSigma * kMatchSigma,
+                                           DegToRad(kMatchSigmaDeg) * DegToRad(kMatchSigmaDeg));
   const Eigen::Vector3d error(found.x - expected.x, found.y - expected.y,
                               WrapAngle(found.theta - expected.theta));
-  return error.dot(information * error);
+  return error.dot(covariance.inverse() * error);
 }
 
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
@@ -43,12 +59,23 @@ double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta 
 
 void ScanOdometry::Restart() {
   reach_m_ = std::numeric_limits<double>::infinity();
+  suspected_m_ = 0.0;
   maps_ = Maps{};
   path_.T_matched_robot = UncertainPose2{};
   path_.T_map_matched = path_.T_map_robot;
   path_.heading_variance = 0.0;
   rest_scans_ = 0;
   lost_ = 0;
+}
+
+void ScanOdometry::EnterTransit() {
+  reach_m_ = options_.transit_reach_m;
+  suspected_m_ = std::numeric_limits<double>::infinity();
+}
+
+void ScanOdometry::LeaveTransit() {
+  if (std::isfinite(reach_m_)) Restart();
+  suspected_m_ = kSuspected;
 }
 
 Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
@@ -108,7 +135,11 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   const bool is_at_rest = Predict(T_last_now);
   if (is_at_rest && !must_match) {
     if (NeedsNoMatch()) {
-      AddToYoungMap(view);
+      if (IsAnotherScene(view)) {
+        BeginAnew(view);
+      } else {
+        AddToYoungMap(view);
+      }
       // The next match answers for this step too: its uncertainty is not counted twice.
       return {T_last_now.mean, Eigen::Matrix3d::Zero()};
     }
@@ -123,14 +154,19 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   lost_ = is_believed ? 0 : lost_ + 1;
   path_.T_map_matched = path_.T_map_robot;
   path_.T_matched_robot = UncertainPose2{};
-  if (lost_ >= kMostLost) BeginAnew(view);
-  if (lost_ == 0) KeepMap(view);
+  suspected_m_ = std::max(0.0, suspected_m_ - predicted.travelled_m);
+  if (is_believed) {
+    KeepMap(view);
+  } else if (lost_ >= kMostLost || IsAnotherScene(view)) {
+    BeginAnew(view);
+  }
   return step;
 }
 
 ScanOdometry::View ScanOdometry::ViewOf(const LaserScan& scan) const {
   const ScanPoints::ConstPtr all_points = PointsInRobot(scan);
-  return {PointsWithin(all_points, reach_m_), PointsWithin(all_points, reach_m_ + kMapMargin)};
+  return {PointsWithin(all_points, reach_m_), PointsWithin(all_points, reach_m_ + kMapMargin),
+          all_points};
 }
 
 void ScanOdometry::Begin(const View& view, const Pose2& T_last_now) {
@@ -172,20 +208,32 @@ ScanOdometry::Prediction ScanOdometry::PriorOf(bool is_at_rest) const {
           .covariance;
   Eigen::Matrix3d predicted_in_map = predicted.motion_in_map;
   predicted_in_map(2, 2) += path_.heading_variance;
-  predicted.heading_variance = predicted_in_map(2, 2);
+  predicted.covariance = predicted_in_map;
   predicted.prior = FlooredInverse(predicted_in_map);
   return predicted;
 }
 
-// Where the scene may have become another one a match has to be good, and for a robot at rest no
-// news.
+// Where the scene may have become another one, a match has to be good: of another scene a match
+// has some points that agree, but seldom half of them. Near walls alone come closer to it, so they
+// also have to lie where the wheels put the robot. Wheels are no better judge than that: they slip,
+// and lag behind the scans of a robot that turns.
 bool ScanOdometry::Believe(const Alignment& aligned, const Prediction& predicted,
                            bool must_match) const {
-  const bool is_doubtful = must_match || std::isfinite(reach_m_);
-  if (!is_doubtful) return aligned.inlier_share >= options_.lost_inlier_share;
+  if (suspected_m_ == 0.0 && !must_match) {
+    return aligned.inlier_share >= options_.lost_inlier_share;
+  }
+  const bool sees_all = std::isinf(reach_m_) && !predicted.is_at_rest;
+  if (sees_all || aligned.inlier_share >= kSameScene) {
+    return aligned.inlier_share >= options_.min_inlier_share;
+  }
   return aligned.inlier_share >= options_.min_inlier_share &&
-         !(predicted.is_at_rest &&
-           Chi2(path_.T_map_robot, aligned.T_map_robot, predicted.prior) > kMostChi2);
+         Chi2(path_.T_map_robot, aligned.T_map_robot, predicted.covariance) <= kMostChi2;
+}
+
+// The scan does not even fit where the wheels put it.
+bool ScanOdometry::IsAnotherScene(const View& view) const {
+  return suspected_m_ > 0.0 && maps_.current->Agreement(*view.points, path_.T_map_robot,
+                                                        kSceneSigma) < options_.min_inlier_share;
 }
 
 // Scans against one map err alike: a short step is worth its share of an alignment's covariance,
@@ -211,17 +259,19 @@ UncertainPose2 ScanOdometry::Fuse(const Alignment& aligned, const Prediction& pr
 }
 
 UncertainPose2 ScanOdometry::GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted) {
-  path_.heading_variance = predicted.heading_variance;
+  path_.heading_variance = predicted.covariance(2, 2);
   return {by_wheels, path_.T_matched_robot.covariance};
 }
 
-// Nothing agrees any more (a door opened on another place, the log jumped): begin again here.
+// Nothing agrees any more (a door opened on another place, the log jumped): begin again here, and
+// of what is seen now all is one scene.
 void ScanOdometry::BeginAnew(const View& view) {
+  reach_m_ = std::numeric_limits<double>::infinity();
   maps_.current.reset();
   maps_.next.reset();
   path_.heading_variance = 0.0;
   lost_ = 0;
-  if (!view.map_points->empty()) AddKeyframe(*view.map_points);
+  if (!view.all_points->empty()) AddKeyframe(*view.all_points);
 }
 
 void ScanOdometry::KeepMap(const View& view) {

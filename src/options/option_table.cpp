@@ -179,6 +179,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
       {"matcher.max_window_deg", &o.mapping.closures.matcher.max_window_deg, 3, 180,
        "deg; half the search window at most"},
 
+      {"validator.rule", ChoiceOf(o.mapping.closures.validator.rule), 0, 0,
+       "evidence: votes for what they are worth; paper: votes alone"},
       {"validator.votes_needed", &o.mapping.closures.validator.votes_needed, 1, 1000,
        "loops that must agree with a closure; paper: 6"},
 

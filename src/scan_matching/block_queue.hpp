@@ -12,7 +12,7 @@
 namespace masked_mapper {
 
 // Offsets [x 2^level, (x + 1) 2^level) x the same for y, at one angle of one problem.
-struct Block {
+struct GridBlock {
   double bound;
   std::int32_t problem;
   std::int32_t level;
@@ -25,7 +25,7 @@ class BlockQueue {
  public:
   BlockQueue() : newest_(kBuckets, kNone) {}
 
-  void Push(const Block& block) {
+  void Push(const GridBlock& block) {
     const std::size_t bucket = BucketOf(block.bound);
     entries_.push_back({block, newest_[bucket]});
     newest_[bucket] = static_cast<std::uint32_t>(entries_.size() - 1);
@@ -33,7 +33,7 @@ class BlockQueue {
   }
 
   /// Of a queue that is not empty.
-  Block Pop() {
+  GridBlock Pop() {
     while (newest_[best_] == kNone) --best_;
     const Entry& entry = entries_[newest_[best_]];
     newest_[best_] = entry.older;
@@ -47,7 +47,7 @@ class BlockQueue {
 
  private:
   struct Entry {
-    Block block;
+    GridBlock block;
     std::uint32_t older;
   };
 

@@ -75,7 +75,7 @@ class Search {
   bool IsDone() const { return waiting_ == 0; }
 
   // Replaces a block by the blocks within it that may hold the answer. Blocks come best first.
-  void Expand(const Block& block, BlockQueue* queue) {
+  void Expand(const GridBlock& block, BlockQueue* queue) {
     --waiting_;
     if (BlockQueue::IsBelow(block.bound, result_.objective)) waiting_ = 0;
     if (block.bound < result_.objective) return;
@@ -170,7 +170,7 @@ std::vector<SearchResult> SearchJointly(const std::vector<SearchProblem>& proble
     unanswered += searches.back()->IsDone() ? 0U : 1U;
   }
   while (unanswered > 0) {
-    const Block block = queue.Pop();
+    const GridBlock block = queue.Pop();
     Search& search = *searches[static_cast<std::size_t>(block.problem)];
     if (search.IsDone()) continue;
     search.Expand(block, &queue);

@@ -29,7 +29,7 @@ Response RespondAt(const LookupTable& table, const std::vector<Eigen::Vector2d>&
   const double s = scale * std::sin(pose.theta);
   Response response;
   Eigen::Matrix3d& hessian = response.hessian;
-  Surface surface;
+  TableSurface surface;
   for (const Eigen::Vector2d& point : points) {
     const double x = c * point.x() - s * point.y();  // cells, from the query's origin
     const double y = s * point.x() + c * point.y();

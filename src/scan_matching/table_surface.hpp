@@ -14,7 +14,7 @@
 namespace masked_mapper {
 
 // The table at a position, with its first and second derivatives per cell.
-struct Surface {
+struct TableSurface {
   double value = 0.0;
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
   double xx = 0.0;
@@ -37,7 +37,8 @@ inline SplineWeights CubicWeights(double t) {
 }
 
 // `x`, `y` in cells; the value of a cell stands at its centre.
-inline bool ReadSurface(const LookupTable::Level& cells, double x, double y, Surface* surface) {
+inline bool ReadSurface(const LookupTable::Level& cells, double x, double y,
+                        TableSurface* surface) {
   x -= cells.x0 + 0.5;
   y -= cells.y0 + 0.5;
   if (!(x > -4.0 && y > -4.0 && x < cells.width + 4.0 && y < cells.height + 4.0)) return false;
@@ -47,7 +48,7 @@ inline bool ReadSurface(const LookupTable::Level& cells, double x, double y, Sur
   const SplineWeights wy = CubicWeights(y - row);
   const std::uint8_t* from = cells.data + (static_cast<std::ptrdiff_t>(row) - 1) * cells.stride +
                              (static_cast<std::ptrdiff_t>(column) - 1);
-  *surface = Surface();
+  *surface = TableSurface();
   for (std::size_t j = 0; j < 4; ++j, from += cells.stride) {
     double value = 0.0;
     double first = 0.0;
@@ -70,7 +71,7 @@ inline bool ReadSurface(const LookupTable::Level& cells, double x, double y, Sur
 
 // Removes the upward curvature of a point's surface, so that a point beside a wall does not make
 // the Newton step a step away from the maximum.
-inline void KeepDownward(Surface* surface) {
+inline void KeepDownward(TableSurface* surface) {
   const double mean = 0.5 * (surface->xx + surface->yy);
   const double difference = 0.5 * (surface->xx - surface->yy);
   const double root = std::sqrt(difference * difference + surface->xy * surface->xy);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/closures_file.hpp"
+#include "export/closures_file.hpp"
 
 #include <gtest/gtest.h>
 

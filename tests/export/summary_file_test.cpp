@@ -42,8 +42,9 @@ std::vector<std::string> Keys(const Json& json) {
 TEST(SummaryFile, HasTheKeysOfTheContract) {
   const Json json = Written(SampleSummary());
   using Names = std::vector<std::string>;
-  EXPECT_EQ(Keys(json), (Names{"log", "mask", "motion_source", "counts", "floors", "seconds",
-                               "peak_memory_mib", "options", "doubts", "warnings"}));
+  EXPECT_EQ(Keys(json),
+            (Names{"log", "mask", "motion_source", "counts", "floors", "transits", "seconds",
+                   "peak_memory_mib", "options", "doubts", "warnings", "sensors"}));
   EXPECT_EQ(Keys(json["counts"]), (Names{"observations", "scans", "nodes", "scan_nodes",
                                          "odometry_nodes", "attempted", "matched", "validated"}));
   EXPECT_EQ(Keys(json["floors"][0]),
@@ -51,6 +52,27 @@ TEST(SummaryFile, HasTheKeysOfTheContract) {
   EXPECT_EQ(Keys(json["seconds"]),
             (Names{"read", "motion", "mask", "projection", "matching", "validation", "optimisation",
                    "rendering", "export", "total"}));
+}
+
+TEST(SummaryFile, TransitsNameTheFloorsOfThePosesAround) {
+  BuildingMap map = SampleMap();
+  const double first = map.trajectory.front().stamp;
+  const double last = map.trajectory.back().stamp;
+  map.transits.push_back({first, last, 3.8, 0.1, {"pressure", "acceleration"}});
+  const OccupancyGrid grid;
+  const Json json = Written(Summarise(map, {"a.log", "always", {}}, {grid, grid}));
+  ASSERT_EQ(json["transits"].size(), 1U);
+  const Json& transit = json["transits"][0];
+  EXPECT_EQ(transit["t_out"], first);
+  EXPECT_EQ(transit["t_in"], last);
+  const auto label_of = [&](const TrajectoryPose& pose) {
+    return map.graph.floors()[static_cast<std::size_t>(pose.floor)].label;
+  };
+  EXPECT_EQ(transit["from"], label_of(map.trajectory.front()));
+  EXPECT_EQ(transit["to"], label_of(map.trajectory.back()));
+  EXPECT_EQ(transit["height_m"], 3.8);
+  EXPECT_EQ(transit["sigma_m"], 0.1);
+  EXPECT_EQ(transit["by"], (std::vector<std::string>{"pressure", "acceleration"}));
 }
 
 TEST(SummaryFile, CountsAddUp) {

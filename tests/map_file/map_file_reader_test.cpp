@@ -27,6 +27,7 @@ BuildingMap AwkwardMap() {
   map.kept_scans[2].scan.ranges.clear();
   map.trajectory[3].T_world_robot = {-0.0, 0.1, -0.2};
   map.trajectory[3].stamp = 0.1 + 0.2;
+  map.trajectory[3].log_stamp = 0.25;
   map.motion_source = MotionSource::kScans;
   map.log.first_bad_line = std::string("line 3: \xff\0 odd", 14);
   map.log.truncated = true;
@@ -296,8 +297,8 @@ TEST(MapFileReader, RefusesCovariancesThatAreNone) {
              "substr(covariance, 1, 8) || x'000000000000F03F' || substr(covariance, 17)",
          }) {
       const fs::path path = folder / (std::to_string(number++) + ".mmap");
-      WriteChanged(path, std::string("UPDATE ") + table + " SET covariance = " + covariance +
-                             " WHERE id = 2");
+      WriteChanged(path, std::string("UPDATE ") + table + " SET covariance = CAST(" + covariance +
+                             " AS BLOB) WHERE id = 2");
       EXPECT_NE(Refusal(path).find("a covariance that is none"), std::string::npos)
           << table << ": " << covariance;
     }

@@ -96,6 +96,34 @@ TEST(FloorAcceleration, WithoutGravityItIsLeftOutAndSaid) {
   EXPECT_EQ(rides.warnings.size(), 1U);
 }
 
+TEST(FloorAcceleration, APhoneThatFiltersWhatLastsStillTellsTheHeight) {
+  // As phones do that take gravity out by a filter: of a push they leave its beginning and an echo.
+  for (const double tau : {0.4, 0.55, 0.8}) {
+    SyntheticDrive drive({0.0, 30.0, 12.0}, 0, 4);
+    drive.Roam(60.0);
+    drive.TakeElevator(1, 2.4);
+    drive.Roam(60.0);
+    drive.TakeElevator(2, 2.4);
+    drive.Roam(60.0);
+    AccelerationTrack track{FloorAccelerationOptions{}};
+    std::mt19937 random(2);
+    std::normal_distribution<double> noise(0.0, 0.02);
+    std::size_t ride = 0;
+    double passed = 0.0;
+    constexpr double kPeriod = 0.005;
+    for (int i = 0; i * kPeriod < drive.Duration(); ++i) {
+      const double acceleration = drive.AccelerationAt(i * kPeriod, &ride);
+      passed += kPeriod / tau * (acceleration - passed);
+      if (i % 8 != 0) continue;
+      track.Observe({i * kPeriod, {0.0, 0.0, 9.81 + acceleration - passed + noise(random)}});
+    }
+    const auto rides = track.FindRides(TrackOf(drive), {});
+    ASSERT_EQ(rides.transits.size(), 2U) << "tau " << tau;
+    EXPECT_NEAR(*rides.transits[0].climb, 30.0, 3.0) << "tau " << tau;
+    EXPECT_NEAR(*rides.transits[1].climb, -18.0, 1.8) << "tau " << tau;
+  }
+}
+
 TEST(FloorAcceleration, DrivingAndRestingMakesNoFloors) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     SyntheticDrive drive({0.0, 3.5}, 0, seed);

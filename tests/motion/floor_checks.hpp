@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/pressure_heights.hpp"
 #include "masked_mapper/motion/wheel_track.hpp"
 #include "motion/synthetic_drive.hpp"
 
@@ -30,6 +31,12 @@ inline SyntheticDrive FourFloors(unsigned seed, double roam_s) {
     drive.Roam(roam_s);
   }
   return drive;
+}
+
+inline PressureHeights HeightsOf(const std::vector<PressureReading>& readings) {
+  PressureTrack track;
+  for (const PressureReading& reading : readings) track.Observe(reading);
+  return track.Heights({});
 }
 
 struct FloorScore {

@@ -226,6 +226,44 @@ TEST(FloorLidar, ARecessWithoutADoorIsNoCab) {
   }
 }
 
+/// Nose first into a nook whose way out bends, half a turn, and out again.
+std::vector<FloorTransit> RidesOfNook(double field_of_view_deg) {
+  LidarTrack lidar{FloorLidarOptions{}};
+  WheelTrack track;
+  Robot robot(&lidar, &track, {field_of_view_deg, 361});
+  AddLine({{-8.0, -1.0},
+           {8.0, -1.0},
+           {8.0, 1.0},
+           {1.0, 1.0},
+           {1.0, 2.2},
+           {2.6, 2.2},
+           {2.6, 4.2},
+           {0.6, 4.2},
+           {0.6, 3.3},
+           {-0.3, 3.3},
+           {-0.3, 1.0},
+           {-8.0, 1.0},
+           {-8.0, -1.0}},
+          robot.walls);
+  robot.pose = {-6.0, 0.0, 0.0};
+  robot.DriveTo(0.35, 0.0);
+  robot.DriveTo(0.35, 2.6);
+  robot.DriveTo(1.7, 3.3);
+  robot.Wait(6.0);
+  robot.TurnTo(robot.pose.theta + kPi);
+  robot.Wait(1.0);
+  robot.DriveTo(0.35, 2.6);
+  robot.DriveTo(0.35, 0.0);
+  robot.DriveTo(6.0, 0.0);
+  return lidar.FindRides(track);
+}
+
+TEST(FloorLidar, ANookRoundACornerIsNoCab) {
+  for (const double field_of_view : {180.0, 270.0}) {
+    EXPECT_TRUE(RidesOfNook(field_of_view).empty()) << field_of_view << " deg";
+  }
+}
+
 TEST(FloorLidar, OpensALevelThatMayBeAnyOther) {
   const Outcome outcome = Tell({});
   const FloorTimeline timeline = TimelineOfTransits(outcome.rides, {});

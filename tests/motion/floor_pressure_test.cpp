@@ -14,8 +14,7 @@ namespace {
 
 FloorTimeline Timeline(const std::vector<PressureReading>& pressure, const WheelTrack& track) {
   const StoreyOptions storeys;
-  return TimelineOfTransits(TransitsOfPressure(HeightsOfPressure(pressure, {}), track, {}, storeys),
-                            storeys);
+  return TimelineOfTransits(TransitsOfPressure(HeightsOf(pressure), track, {}, storeys), storeys);
 }
 
 void ExpectRight(const FloorTimeline& timeline, const SyntheticDrive& drive, std::size_t levels) {

@@ -185,6 +185,41 @@ TEST(FloorTracker, TakesAccelerationWhereThereIsNoPressure) {
   EXPECT_LT(score.worst_elevation, 0.2) << "m";
 }
 
+TEST(FloorTracker, ABarometerThatStopsLeavesTheRestToTheOthers) {
+  SyntheticDrive drive({0.0, 3.5, 7.0}, 0, 1);
+  drive.Roam(200.0);
+  drive.TakeElevator(1);
+  drive.Roam(200.0);
+  drive.TakeElevator(2);
+  drive.Roam(200.0);
+  drive.TakeElevator(0);
+  drive.Roam(200.0);
+  const double stop = 0.5 * (drive.rides()[0].end + drive.rides()[1].start);
+  const double in_ride = 0.5 * (drive.rides()[1].start + drive.rides()[1].end);
+  for (const double last : {stop, in_ride}) {
+    FloorTracker tracker{FloorOptions{}};
+    ObserveWheels(drive, &tracker);
+    for (const PressureReading& reading : SyntheticBarometer{}.Read(drive, 1)) {
+      if (reading.stamp < last) tracker.Observe(reading);
+    }
+    std::size_t ride = 0;
+    for (double t = 0.0; t < drive.Duration(); t += 0.02) {
+      tracker.Observe(AccelerationReading{t, {0.0, 0.0, 9.81 + drive.AccelerationAt(t, &ride)}});
+    }
+    const FloorTimeline timeline = tracker.Finish();
+    const FloorScore score = ScoreFloors(timeline, drive);
+    EXPECT_EQ(score.levels, 3U) << "stops at " << last;
+    EXPECT_GT(score.right_share, 0.999) << "stops at " << last;
+    EXPECT_LT(score.worst_elevation, 0.3) << "m, stops at " << last;
+    const std::vector<FloorChange> changes = ChangesOf(timeline);
+    ASSERT_EQ(changes.size(), 3U);
+    EXPECT_TRUE(changes[0].by.Has(FloorSource::kPressure));
+    EXPECT_TRUE(changes[0].by.Has(FloorSource::kAcceleration));
+    EXPECT_FALSE(changes[2].by.Has(FloorSource::kPressure));
+    EXPECT_NEAR(changes[2].height_m, -7.0, 0.3);
+  }
+}
+
 TEST(FloorTracker, FinishingTwiceSaysTheSame) {
   const SyntheticDrive drive = UpAndDown();
   FloorTracker tracker{FloorOptions{}};

@@ -172,6 +172,65 @@ TEST(ScanOdometry, AnotherSceneAltogetherIsNotBelievedAndThenBegunAnew) {
   EXPECT_NEAR(path.y, 0.0, 0.05) << "m";
 }
 
+TEST(ScanOdometry, ASceneThatChangesInTransitTurnsNoRobot) {
+  // A cab, and then at once a hall on whose walls the cab's fit nowhere near; the robot goes on.
+  BoxScene cab;
+  cab.AddBox(-1.0, -1.0, 1.0, 1.0);
+  BoxScene hall;
+  hall.AddBox(-1.6, -2.3, 7.0, 2.1);
+  hall.AddBox(3.0, 0.6, 3.8, 1.4);
+  for (const int late : {0, 4, 12}) {  // scans from the change to when it is said to be one
+    std::mt19937 random(5);
+    ScanOdometry odometry({});
+    for (int i = 0; i < 20; ++i) {
+      if (i == 3) odometry.EnterTransit();
+      odometry.Observe(cab.Scan({}, 181, 180.0, &random, 0.01), UncertainPose2{});
+    }
+    Pose2 truth;
+    Pose2 path;
+    for (int i = 0; i < 30; ++i) {
+      if (i == late) odometry.LeaveTransit();
+      const Pose2 step = i < 8 ? Pose2{} : Pose2{0.1, 0.0, DegToRad(2.0)};
+      truth = truth * step;
+      path = path * odometry
+                        .Observe(hall.Scan(truth, 181, 180.0, &random, 0.01),
+                                 i < 8 ? UncertainPose2{} : Wheels(step, 0.02, 1.0), i == late)
+                        .mean;
+    }
+    EXPECT_LT(Distance(path, truth), 0.05) << late << " scans late";
+    EXPECT_LT(RadToDeg(std::abs(WrapAngle(path.theta - truth.theta))), 0.5) << late;
+  }
+}
+
+/// A robot at rest in a room, matched once more; then it sees `later` until the map is lost.
+ScanOdometry LostAtRest(const LaserScan& later) {
+  ScanOdometryOptions options;
+  options.settled_deg = 0.0;
+  ScanOdometry odometry(options);
+  const LaserScan room = FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0);
+  odometry.Observe(room, UncertainPose2{});
+  odometry.Observe(room, UncertainPose2{});
+  for (int i = 0; i < 5; ++i) odometry.Observe(later, UncertainPose2{});
+  return odometry;
+}
+
+TEST(ScanOdometry, AMapThatIsLostWithNothingToSeeBeginsAtTheNextScan) {
+  LaserScan nothing = FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0);
+  nothing.ranges.assign(nothing.ranges.size(), kNoReturn);
+  ScanOdometry odometry = LostAtRest(nothing);
+  EXPECT_EQ(odometry.map_scans(), 0U);
+  odometry.Observe(nothing, UncertainPose2{});
+  EXPECT_EQ(odometry.map_scans(), 0U);
+  odometry.Observe(FurnishedRoom().Scan({3.0, 3.0, 1.0}, 361, 270.0), UncertainPose2{});
+  EXPECT_EQ(odometry.map_scans(), 1U);
+}
+
+TEST(ScanOdometry, TheScanThatBeginsAMapAnewIsInItOnce) {
+  BoxScene hall;
+  hall.AddBox(-21.3, -17.6, 22.4, 19.7);
+  EXPECT_EQ(LostAtRest(hall.Scan({}, 361, 270.0)).map_scans(), 1U);
+}
+
 TEST(ScanOdometry, ATurnInACabIsTheBetterTheLongerTheRobotStoodBefore) {
   // Half a turn between near walls hangs on what is known of them before it: one scan, or several.
   BoxScene cab;

@@ -46,10 +46,17 @@ struct Summary {
     double area_m2 = 0.0;  ///< known to be free or occupied
   };
 
+  struct TransitEntry {
+    TransitRecord transit;
+    std::string from;  ///< label of a floor
+    std::string to;
+  };
+
   RunDescription run;
   std::string motion_source;  ///< the one that was used: odometry, scans or fused
   Counts counts;
   std::vector<FloorEntry> floors;  ///< by FloorId, which is the field `label` of the clouds
+  std::vector<TransitEntry> transits;
   /// Attempts that did not become closures, by reason; most frequent first.
   std::vector<std::pair<std::string, std::uint64_t>> rejections;
   StageSeconds seconds;

@@ -12,6 +12,7 @@
 // PaperRule() switches them off.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -20,7 +21,16 @@
 
 namespace masked_mapper {
 
+enum class ValidatorRule {
+  kEvidence,  ///< votes, each for what it is worth, and what the best validated way says
+  kPaper,     ///< votes alone, as in the paper
+};
+constexpr std::array<const char*, 2> NamesOf(ValidatorRule /*any*/) {
+  return {"evidence", "paper"};
+}
+
 struct ValidatorOptions {
+  ValidatorRule rule = ValidatorRule::kEvidence;
   int votes_needed = 6;  ///< paper: 6
   /// Mahalanobis distance from the identity below which a loop agrees; paper: 2
   double max_loop_error = 2.0;
@@ -51,7 +61,12 @@ struct ValidatorOptions {
 };
 
 /// The paper's rule: none of the conditions of ours (the bounds on the number of loops stay).
-ValidatorOptions PaperRule();
+ValidatorOptions PaperRule(ValidatorOptions options = {});
+
+/// What `options.rule` comes to. The bounds on traces are worth what they say where scans lay out
+/// the motion; by wheels alone an honest loop of a corridor exceeds them all, and they are left
+/// out.
+ValidatorOptions Settled(const ValidatorOptions& options, bool laid_out_by_scans);
 
 class LoopValidator {
  public:

@@ -57,12 +57,22 @@ struct Drive {
   std::string reason;  ///< of a drive that was to join others: why it did, or did not
 };
 
+/// The robot went from one floor to another, or back to the same: those of the poses around.
+struct TransitRecord {
+  double t_out = 0.0;     ///< s, the floor was left
+  double t_in = 0.0;      ///< s, the other one was reached
+  double height_m = 0.0;  ///< up
+  double sigma_m = 0.0;
+  std::vector<std::string> by;  ///< the sensors that decided
+};
+
 struct BuildingMap {
   PoseGraph graph;
   std::vector<TrajectoryPose> trajectory;  ///< one per scan of the logs, in order
   std::vector<KeptScan> kept_scans;        ///< in order
   std::vector<Closure> closures;           ///< every pair that was offered, in order
   std::vector<Drive> drives;               ///< in order; of one log: one
+  std::vector<TransitRecord> transits;     ///< of the drives of this run, in order
   LogStatistics log;
   MotionSource motion_source = MotionSource::kFused;  ///< that of the first drive
   StageSeconds seconds;

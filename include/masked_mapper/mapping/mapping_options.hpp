@@ -15,9 +15,7 @@ namespace masked_mapper {
 struct NodeOptions {
   double min_edge_length_m = 1.5;  ///< between scan nodes, straight line; paper: 1.5
   double max_edge_length_m = 9.0;  ///< to the last node of any kind; paper: 9
-  double cab_m = 3.0;          ///< travel in transit above which it is no cab but stairs or a ramp
-  double ride_sigma_m = 0.03;  ///< at most, of a ride in a cab whose walls were seen
-  double ride_sigma_deg = 0.15;        ///< the same of its heading
+  double cab_m = 3.0;  ///< travel in transit above which it is no cab but stairs or a ramp
   double kept_scan_distance_m = 0.15;  ///< travel from one rendered scan to the next
   double kept_scan_angle_deg = 10.0;   ///< or turn, whichever comes first
 };

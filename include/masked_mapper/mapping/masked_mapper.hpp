@@ -47,8 +47,6 @@ class MaskedMapper {
   void ChangeFloor(const FloorInterval& interval, double stamp);
   NodeId AddNode(double stamp, FloorId floor, EdgeKind kind, KeptScanId scan = -1);
   KeptScanId Keep(const LaserScan& scan);
-  /// The cab's walls ride along: scans against them err once, not with every turn in it.
-  UncertainPose2 RideInCab(const UncertainPose2& motion) const;
   void CloseLoops(NodeId new_node);
   void RecordPose(const LaserScan& scan, const FloorInterval& interval);
   bool IsNextKept() const;

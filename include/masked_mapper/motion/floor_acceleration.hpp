@@ -34,6 +34,9 @@ class AccelerationTrack {
 
   bool IsEmpty() const { return spells_.empty() && count_ == 0; }
 
+  /// Of what is kept, in order.
+  std::vector<double> Stamps() const;
+
   struct Rides {
     std::vector<FloorTransit> transits;  ///< in order
     bool usable = false;                 ///< false: the readings are not those of an accelerometer

@@ -4,9 +4,9 @@
 // ride opens a level that may be one of the others.
 //
 // Two things tell a cab from a narrow corner. A cab has a door: the robot leaves, or came in, where
-// it saw a wall before. And when the door opens there may be another scene than on the way in; but
-// floors often look alike in front of a shaft, so a scene that is the same proves nothing. In doubt
-// it was a ride: one too many is mended when the map joins the two levels, one too few never.
+// it saw a wall before, or sees the door move. And when the door opens there may be another scene
+// than on the way in; but floors often look alike in front of a shaft, so a scene that is the same
+// proves nothing. Where neither is seen the robot stood in a nook.
 #pragma once
 
 #include <deque>

@@ -2,11 +2,34 @@
 // When the robot was on which floor: what every floor source ends in, and what mapping asks.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace masked_mapper {
+
+enum class FloorSource {
+  kAuto,          ///< all that the log holds
+  kLabels,        ///< FLOOR lines, or a file of labels
+  kPressure,      ///< a barometer
+  kAcceleration,  ///< an accelerometer: elevators only
+  kLidar,         ///< the scans: elevators only, and never which floor
+  kNone,          ///< one floor
+};
+
+constexpr std::array<const char*, 6> NamesOf(FloorSource /*any*/) {
+  return {"auto", "labels", "pressure", "acceleration", "lidar", "none"};
+}
+
+/// Several of them, one bit each.
+struct FloorSources {
+  unsigned bits = 0;
+
+  void Add(FloorSource source) { bits |= 1U << static_cast<unsigned>(source); }
+  void Add(FloorSources others) { bits |= others.bits; }
+  bool Has(FloorSource source) const { return (bits >> static_cast<unsigned>(source) & 1U) != 0; }
+};
 
 struct FloorLevel {
   std::string label;                ///< as said by the log; empty: see FloorNames()
@@ -26,6 +49,7 @@ struct FloorInterval {
   /// By wheels, of the whole way between two floors (the same for each of its intervals): a cab
   /// goes nowhere, stairs do. Known to none of the sources; NoteTravel() fills it in.
   double travelled_m = 0.0;
+  FloorSources by = {};  ///< in transit: what told it
 };
 
 struct FloorTimeline {
@@ -34,6 +58,20 @@ struct FloorTimeline {
 
   const FloorInterval& At(double stamp) const;
 };
+
+/// From one floor to another, or back to the same.
+struct FloorChange {
+  double t_out = 0.0;  ///< s; minus infinity: the log begins in it
+  double t_in = 0.0;   ///< s; plus infinity: the log ends in it
+  std::size_t from = 0;
+  std::size_t to = 0;
+  double height_m = 0.0;  ///< up
+  double sigma_m = 0.0;
+  FloorSources by;
+};
+
+/// In order.
+std::vector<FloorChange> ChangesOf(const FloorTimeline& timeline);
 
 /// The way of wheels up to a stamp.
 struct TravelledWay {

@@ -8,27 +8,17 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_acceleration.hpp"
+#include "masked_mapper/motion/floor_evidence.hpp"
 #include "masked_mapper/motion/floor_labels.hpp"
 #include "masked_mapper/motion/floor_lidar.hpp"
 #include "masked_mapper/motion/floor_pressure.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/pressure_heights.hpp"
 #include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
-
-enum class FloorSource {
-  kAuto,          ///< the best that the log holds, in the order below
-  kLabels,        ///< FLOOR lines, or a file of labels
-  kPressure,      ///< a barometer
-  kAcceleration,  ///< an accelerometer: elevators only
-  kLidar,         ///< the scans: elevators only, and never which floor
-  kNone,          ///< one floor
-};
-constexpr std::array<const char*, 6> NamesOf(FloorSource /*any*/) {
-  return {"auto", "labels", "pressure", "acceleration", "lidar", "none"};
-}
 
 struct FloorOptions {
   FloorSource source = FloorSource::kAuto;
@@ -51,7 +41,7 @@ class FloorTracker {
 
   /// All levels and intervals, once the whole log was observed. Clears warnings of before.
   FloorTimeline Finish();
-  /// What Finish() went by; not kAuto.
+  /// The best of what Finish() went by; not kAuto.
   FloorSource source() const { return source_; }
   /// What was wrong, one line each, each said once.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -61,18 +51,29 @@ class FloorTracker {
     return options_.source == FloorSource::kAuto || options_.source == source;
   }
 
-  FloorTimeline FinishByClimbs(FloorSource source, const std::vector<FloorTransit>& transits);
+  void NoteStamp(double stamp);
+  struct Evidence {
+    std::vector<FloorEvidence> sensors;  ///< the best first
+    std::vector<FloorSource> sources;    ///< of them
+    std::vector<std::string> warnings;
+  };
+  Evidence Gather() const;
+  void AddPressure(Evidence& evidence) const;
+  void AddAcceleration(Evidence& evidence) const;
+  bool IsHeard(const Evidence& evidence, const TimeSpan& stay) const;
   bool HasLabels() const;
-  /// Whether the robot stood still long enough for a ride at least once, as far as wheels tell.
-  bool MayHaveRidden() const;
+  /// Whether scans may tell of a ride that nothing else would have noticed: the robot stood still
+  /// long enough where no better sensor listened.
+  bool ScansMayTell(const Evidence& evidence) const;
 
   FloorOptions options_;
   bool labels_are_given_ = false;
   std::vector<FloorLabel> labels_;
-  std::vector<PressureReading> pressure_;
+  PressureTrack pressure_;
   AccelerationTrack acceleration_;
   LidarTrack lidar_;
-  bool has_scans_ = false;
+  TimeSpan log_{0.0, 0.0};  ///< first and last stamp
+  bool has_stamps_ = false;
   WheelTrack track_;
   FloorSource source_ = FloorSource::kNone;
   std::vector<std::string> warnings_;

@@ -23,6 +23,7 @@ struct FloorTransit {
   double end = 0.0;             ///< s
   std::optional<double> climb;  ///< m up (negative: down); empty: nobody knows
   double climb_sigma = 0.0;     ///< m
+  FloorSources by = {};         ///< the sensors that noticed it
 };
 
 /// A climb smaller than this leads to no other floor (ours: a fifth below the smallest gap, for the

@@ -41,10 +41,10 @@ class MotionEstimator {
   void Observe(const LaserScan& scan, bool must_match = false);
   /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
   void StartNode() { T_node_robot_ = UncertainPose2{}; }
-  /// The scene is another one (a floor was changed): the next scan is aligned to none before it.
-  void RestartScans();
-  /// The robot is in a cab or on stairs: only what is near stays the same when a door opens.
+  /// The robot is in a cab: only what is near stays the same when a door opens.
   void EnterTransit();
+  /// It is said to be on a floor again: the next scan is aligned to none before it.
+  void LeaveTransit();
 
   /// Pose at the scan observed last, along the path; frame `odom` is the robot's first pose.
   const Pose2& T_odom_robot() const { return T_odom_robot_; }
@@ -59,6 +59,7 @@ class MotionEstimator {
   }
 
  private:
+  void RestartScans();
   UncertainPose2 StepWithoutWheels(double stamp) const;
   void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);
 

@@ -48,8 +48,12 @@ class ScanOdometry {
   /// The robot is somewhere else altogether: forget the local maps, go on from here, and look as
   /// far as there is to see.
   void Restart();
-  /// Points farther than this from the robot are not looked at from now on; the local maps stay.
-  void SetReach(double reach_m) { reach_m_ = reach_m; }
+  /// From now on the scene may become another one at any scan. What was seen near the robot may
+  /// stay, so the local maps do; what is farther off is not looked at.
+  void EnterTransit();
+  /// The robot is said to be on a floor again: forget the local maps and look as far as there is to
+  /// see. A door may still open late, so for a while the scene is held under suspicion.
+  void LeaveTransit();
 
   /// Sigma of the heading of the last observed scan against the local map by its points alone,
   /// radians; infinite if it was not matched.
@@ -57,6 +61,9 @@ class ScanOdometry {
 
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
+
+  /// Scans in the local map; 0: there is none.
+  std::size_t map_scans() const { return maps_.current ? maps_.current->scans() : 0; }
 
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
@@ -71,7 +78,7 @@ class ScanOdometry {
       if (present) archive(**map);
     }
     archive(path_.heading_variance, rest_scans_, heading_sigma_rad_, inlier_share_, reach_m_,
-            lost_);
+            suspected_m_, lost_);
   }
 
  private:
@@ -93,6 +100,7 @@ class ScanOdometry {
     ScanPoints::ConstPtr points;
     /// Where the points of a map end, they would hold back a robot that moves on: it gets more.
     ScanPoints::ConstPtr map_points;
+    ScanPoints::ConstPtr all_points;
   };
   /// What the wheels say since the scan matched last.
   struct Prediction {
@@ -100,8 +108,9 @@ class ScanOdometry {
     double turned_rad = 0.0;
     bool is_at_rest = false;
     Eigen::Matrix3d motion_in_map = Eigen::Matrix3d::Zero();  ///< covariance
-    double heading_variance = 0.0;                            ///< with that of the last match
-    Eigen::Matrix3d prior = Eigen::Matrix3d::Zero();          ///< information for the match
+    /// The same with the doubt of the last match's heading, and its information.
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d prior = Eigen::Matrix3d::Zero();
   };
 
   View ViewOf(const LaserScan& scan) const;
@@ -109,6 +118,7 @@ class ScanOdometry {
   bool Predict(const UncertainPose2& T_last_now);
   Prediction PriorOf(bool is_at_rest) const;
   bool NeedsNoMatch() const;
+  bool IsAnotherScene(const View& view) const;
   bool Believe(const Alignment& aligned, const Prediction& predicted, bool must_match) const;
   UncertainPose2 Fuse(const Alignment& aligned, const Prediction& predicted,
                       const Pose2& T_map_last);
@@ -126,8 +136,9 @@ class ScanOdometry {
   Path path_;
   Maps maps_;
   double reach_m_ = std::numeric_limits<double>::infinity();
-  int rest_scans_ = 0;  ///< matched since the robot came to rest
-  int lost_ = 0;        ///< scans in a row that were not believed
+  double suspected_m_ = 0.0;  ///< travel through which the scene may become another one
+  int rest_scans_ = 0;        ///< matched since the robot came to rest
+  int lost_ = 0;              ///< scans in a row that were not believed
   double heading_sigma_rad_ = std::numeric_limits<double>::infinity();
   double inlier_share_ = 1.0;
 };
