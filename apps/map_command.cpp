@@ -105,8 +105,9 @@ constexpr const char* kFooter =
 
 void AddMapCommand(CLI::App& program, Run& run) {
   auto arguments = std::make_shared<MapArguments>();
-  CLI::App* command = program.add_subcommand(
-      "map", "Map logs: CARMEN text (.clf, .log), plain or .gz, with 2D lidar and odometry");
+  CLI::App* command = program.add_subcommand("map",
+                                             "Map logs with 2D lidar: CARMEN text (.clf, .log), "
+                                             "ROS bags (.bag, .mcap, .db3); packed, too");
   AddInputs(command, arguments.get());
   AddRunFlags(command, arguments.get());
   command->footer(kFooter);
