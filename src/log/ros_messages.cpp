@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "angle_as_meant.hpp"
 #include "ros_fields.hpp"
 
 namespace masked_mapper {
@@ -51,14 +51,6 @@ bool Transform(Fields* fields, Eigen::Isometry3d* transform) {
   *transform = Eigen::Isometry3d(rotation.normalized());
   transform->translation() = translation;
   return true;
-}
-
-/// Scanners are built in degrees, and a message holds single precision. Where a short number of
-/// degrees has the same bits, it was meant: a bag and a text log then give the same beams.
-double AngleAsMeant(float angle) {
-  constexpr double kStepsPerDegree = 1e4;
-  const double meant = DegToRad(std::round(RadToDeg(angle) * kStepsPerDegree) / kStepsPerDegree);
-  return static_cast<float>(meant) == angle ? meant : static_cast<double>(angle);
 }
 
 /// The fields between the header and the ranges.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "angle_as_meant.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
 
@@ -89,7 +90,7 @@ BeamGeometry RobotLaserGeometry(const CarmenScan& scan) {
   double step = scan.angle_step;
   if (!step_agrees && has_span && steps > 0.0) step = span / steps;
   if (step <= 0.0 || step * steps > 1.01 * kFullTurn) return FlaserGeometry(scan.beams, kPi);
-  return {scan.start_angle, step};
+  return {AngleAsMeant(scan.start_angle), AngleAsMeant(step)};
 }
 
 BeamGeometry ScanCalibration::Geometry(const CarmenScan& scan) const {
