@@ -16,6 +16,8 @@
 namespace masked_mapper {
 namespace {
 
+constexpr double kLongestSilence = 3.0;  // s; no odometry is so slow
+
 /// One label may stand for the whole log; of several, none in the log's time means another clock.
 void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
                 const LogStatistics& log) {
@@ -53,6 +55,7 @@ class Surveyor {
     } else if (survey_.has_odometry) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
     }
+    TellSilence();
     survey_.median_travel_m = Median(std::move(travels_));
     survey_.median_turn_rad = Median(std::move(turns_));
     survey_.median_period_s = Median(std::move(periods_));
@@ -62,6 +65,7 @@ class Surveyor {
  private:
   void ObserveScan(const LaserScan& scan) {
     ++survey_.scans;
+    NoteSilence(scan);
     if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
     stamp_before_ = scan.stamp;
     if (!scan.T_odom_robot) return;
@@ -78,6 +82,23 @@ class Surveyor {
     T_odom_before_ = scan.T_odom_robot;
   }
 
+  void NoteSilence(const LaserScan& scan) {
+    if (scan.T_odom_robot || survey_.scans == 1) silence_.start = scan.stamp;
+    silence_.end = scan.stamp;
+    if (silence_.Duration() > longest_silence_.Duration()) longest_silence_ = silence_;
+  }
+
+  /// A motion that nobody measured is the worst to be silent about.
+  void TellSilence() {
+    const double duration = longest_silence_.Duration();
+    if (!survey_.has_odometry || duration <= kLongestSilence) return;
+    survey_.findings.push_back(
+        {"odometry is silent for " + FixedText(duration, 1) + " s from " +
+             FixedText(longest_silence_.start, 3) + " s on",
+         duration, 0.0, longest_silence_.start, longest_silence_.end,
+         "the way meanwhile may be wrong, and so may what was mapped after it"});
+  }
+
   void NoteWay(const OdometryReading& reading) {
     const double step = T_odom_noted_ ? Distance(*T_odom_noted_, reading.T_odom_robot) : 0.0;
     survey_.has_odometry = true;
@@ -90,6 +111,8 @@ class Surveyor {
   LogSurvey survey_;
   FloorTracker floors_;
   MountCheck mount_;
+  TimeSpan silence_;  ///< since the last scan with odometry
+  TimeSpan longest_silence_;
   std::optional<double> stamp_before_;  ///< of the scan before, as all below
   std::optional<Pose2> T_odom_before_;
   std::optional<Pose2> T_odom_noted_;
@@ -119,7 +142,8 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
     if (survey.scans == 0) throw InputError(source.path() + ": not one valid laser scan in it");
     if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
     survey.reconsidered = reconsidered;
-    survey.findings = source.Findings();
+    const std::vector<SensorFinding> of_the_source = source.Findings();
+    survey.findings.insert(survey.findings.begin(), of_the_source.begin(), of_the_source.end());
     return survey;
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -30,6 +31,30 @@ LaserScan ScanAt(double stamp, double x) {
   scan.ranges.assign(181, 4.0F);
   scan.T_odom_robot = Pose2{x, 0.0, 0.0};
   return scan;
+}
+
+TEST(SurveyLog, TellsSilencesOfTheOdometry) {
+  for (const double silent_s : {1.0, 15.0, 1000.0}) {
+    const std::string path = TemporaryLog("silence.mcap");
+    LogWriter writer(path);
+    for (int i = 0; i < 400; ++i) {
+      const double stamp = 1000.0 + 0.1 * i;
+      const bool is_silent = stamp > 1010.05 && stamp < 1010.05 + silent_s;
+      if (!is_silent) writer.Write(OdometryReading{stamp, {0.01 * i, 0.0, 0.0}});
+      LaserScan scan = ScanAt(stamp + 0.01, 0.0);
+      scan.T_odom_robot.reset();
+      writer.Write(scan);
+    }
+    writer.Close();
+    const LogSurvey survey = Survey(path, {});
+    if (silent_s < 2.0) {
+      EXPECT_TRUE(survey.findings.empty()) << "s of silence: " << silent_s;
+      continue;
+    }
+    ASSERT_EQ(survey.findings.size(), 1U) << "s of silence: " << silent_s;
+    EXPECT_NEAR(survey.findings[0].t_a, 1010.0, 0.7);
+    EXPECT_NEAR(survey.findings[0].t_b, std::min(1010.0 + silent_s, 1039.9), 0.7);
+  }
 }
 
 TEST(SurveyLog, CountsScansAndTheirSteps) {
