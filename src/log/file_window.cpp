@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_window.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include "masked_mapper/text/input_error.hpp"
 
@@ -17,30 +13,23 @@ constexpr std::size_t kWindow = std::size_t{16} << 10U;
 }  // namespace
 
 FileWindow::FileWindow(const std::string& path, std::string shown_name)
-    : name_(std::move(shown_name)) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(name_ + ": is no file that can be read");
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
-  file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw InputError(name_ + ": " + std::strerror(errno));
+    : name_(std::move(shown_name)), file_(path, name_) {
   // The window is the buffer.
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+  std::setvbuf(file_.stream.get(), nullptr, _IONBF, 0);
 }
 
 void FileWindow::Fill(std::uint64_t offset, unsigned char* to, std::size_t count) {
-  if (::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0 ||
-      std::fread(to, 1, count, file_.get()) != count) {
+  if (::fseeko(file_.stream.get(), static_cast<off_t>(offset), SEEK_SET) != 0 ||
+      std::fread(to, 1, count, file_.stream.get()) != count) {
     throw InputError(name_ + ": cannot be read");
   }
 }
 
 const unsigned char* FileWindow::At(std::uint64_t offset, std::size_t count, std::size_t* found) {
-  *found =
-      static_cast<std::size_t>(std::min<std::uint64_t>(count, size_ - std::min(size_, offset)));
+  *found = static_cast<std::size_t>(
+      std::min<std::uint64_t>(count, file_.size - std::min(file_.size, offset)));
   if (offset < window_begin_ || offset + *found > window_begin_ + window_.size()) {
-    window_.resize(std::min<std::uint64_t>(std::max(kWindow, *found), size_ - offset));
+    window_.resize(std::min<std::uint64_t>(std::max(kWindow, *found), file_.size - offset));
     window_begin_ = offset;
     Fill(offset, window_.data(), window_.size());
   }

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 
+#include "regular_file.hpp"
 #include "unpacking.hpp"
 
 namespace masked_mapper {
@@ -16,7 +15,7 @@ class FileWindow {
   /// Throws InputError when the file cannot be read.
   explicit FileWindow(const std::string& path, std::string shown_name);
 
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const { return file_.size; }
   const std::string& name() const { return name_; }
   /// At most `count` bytes, as many as the file has there; valid until the next call.
   const unsigned char* At(std::uint64_t offset, std::size_t count, std::size_t* found);
@@ -24,14 +23,10 @@ class FileWindow {
   void Read(std::uint64_t offset, std::size_t count, Bytes* bytes);
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   void Fill(std::uint64_t offset, unsigned char* to, std::size_t count);
 
   std::string name_;
-  std::unique_ptr<std::FILE, CloseFile> file_;
-  std::uint64_t size_ = 0;
+  RegularFile file_;
   Bytes window_;
   std::uint64_t window_begin_ = 0;
 };

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "record_file.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "masked_mapper/text/input_error.hpp"
@@ -18,15 +14,7 @@ constexpr std::uint64_t kLargestHeader = std::uint64_t{1} << 20U;
 }  // namespace
 
 RecordFile::RecordFile(const std::string& path, std::string shown_name)
-    : name_(std::move(shown_name)) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(name_ + ": is no file that can be read");
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
-  file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw InputError(name_ + ": " + std::strerror(errno));
-}
+    : name_(std::move(shown_name)), file_(path, name_) {}
 
 bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
   std::uint64_t header_size = 0;
@@ -38,7 +26,7 @@ bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
 
 bool RecordFile::ReadLength(std::uint64_t* length) {
   unsigned char bytes[4];
-  if (left() < 4 || std::fread(bytes, 1, 4, file_.get()) != 4) return false;
+  if (left() < 4 || std::fread(bytes, 1, 4, file_.stream.get()) != 4) return false;
   position_ += 4;
   *length = LittleEndian(bytes, 4);
   return true;
@@ -46,7 +34,7 @@ bool RecordFile::ReadLength(std::uint64_t* length) {
 
 void RecordFile::Read(std::uint64_t count, std::vector<unsigned char>* bytes) {
   bytes->resize(count);
-  if (std::fread(bytes->data(), 1, count, file_.get()) != count) {
+  if (std::fread(bytes->data(), 1, count, file_.stream.get()) != count) {
     throw InputError(name_ + ": cannot be read");
   }
   position_ += count;
@@ -54,12 +42,12 @@ void RecordFile::Read(std::uint64_t count, std::vector<unsigned char>* bytes) {
 
 bool RecordFile::Skip(std::uint64_t count) {
   const bool fits = count <= left();
-  Seek(fits ? position_ + count : size_);
+  Seek(fits ? position_ + count : file_.size);
   return fits;
 }
 
 void RecordFile::Seek(std::uint64_t position) {
-  if (::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
+  if (::fseeko(file_.stream.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
     throw InputError(name_ + ": cannot be read");
   }
   position_ = position;

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "bag_record.hpp"
+#include "regular_file.hpp"
 
 namespace masked_mapper {
 
@@ -17,9 +16,9 @@ class RecordFile {
   /// Throws InputError, as all below: cannot be opened or read.
   RecordFile(const std::string& path, std::string shown_name);
 
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const { return file_.size; }
   std::uint64_t position() const { return position_; }
-  std::uint64_t left() const { return size_ - position_; }
+  std::uint64_t left() const { return file_.size - position_; }
 
   /// The header of the record at the position, and the length of its data, whose first byte is then
   /// the position. False when there is none. The header's bytes stay until the next call.
@@ -31,14 +30,10 @@ class RecordFile {
   void Seek(std::uint64_t position);
 
  private:
-  struct FileCloser {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   bool ReadLength(std::uint64_t* length);
 
   std::string name_;
-  std::unique_ptr<std::FILE, FileCloser> file_;
-  std::uint64_t size_ = 0;
+  RegularFile file_;
   std::uint64_t position_ = 0;
   std::vector<unsigned char> header_bytes_;
 };
