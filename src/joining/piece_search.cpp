@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "masked_mapper/geometry/rigid_alignment.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
@@ -72,27 +73,6 @@ struct Guess {
   double spread_m = 0.0;
   bool is_valid = false;
 };
-
-/// The rigid motion that takes the second positions nearest to the first.
-Pose2 Aligned(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& pairs) {
-  Eigen::Vector2d to_centre = Eigen::Vector2d::Zero();
-  Eigen::Vector2d from_centre = Eigen::Vector2d::Zero();
-  for (const auto& [to, from] : pairs) {
-    to_centre += to / static_cast<double>(pairs.size());
-    from_centre += from / static_cast<double>(pairs.size());
-  }
-  double along = 0.0;
-  double across = 0.0;
-  for (const auto& [to, from] : pairs) {
-    const Eigen::Vector2d a = from - from_centre;
-    const Eigen::Vector2d b = to - to_centre;
-    along += a.dot(b);
-    across += a.x() * b.y() - a.y() * b.x();
-  }
-  const Pose2 turn{0.0, 0.0, std::atan2(across, along)};
-  const Eigen::Vector2d shift = to_centre - turn * from_centre;
-  return {shift.x(), shift.y(), turn.theta};
-}
 
 class PieceFinder {
  public:
@@ -376,7 +356,7 @@ class PieceFinder {
                                          [](const auto& score) { return score.has_value(); }));
       constexpr std::size_t kLeastToAlign = 3;
       if (pairs.size() >= kLeastToAlign && SpreadOf(fitting) > joins_.min_spread_m) {
-        guess.T_older_newer = Aligned(pairs);
+        guess.T_older_newer = AlignRigidly(pairs);
       }
       std::vector<std::size_t> agreeing;
       for (const std::size_t i : fitting) {
