@@ -168,7 +168,10 @@ bool LoopValidator::MayEnter(const PoseGraph& graph, ClosureId id,
     if (max_trace == kNoLimit && places < options_.places_needed) return false;
     const std::optional<LeastErrorPath> path =
         search_.Find(graph, closures, closure.newer, closure.older, max_trace, RemovedSteps());
-    if (!path || path->unvalidated > 0) continue;
+    if (!path || path->unvalidated > 0) {
+      if (max_trace == kNoLimit) break;
+      continue;
+    }
     const UncertainPose2 loop = path->T_from_to * closure.T_older_newer;
     const double error = MahalanobisFromIdentity(loop);
     const bool enters =
