@@ -94,7 +94,6 @@ class LogDrive {
     }
     settled_ = options_;
     settled_.motion.source = SettleMotionSource(path_, options_.motion, survey_);
-    settled_.closures.refine = settled_.motion.source != MotionSource::kOdometry;
     Begin();
     if (checkpoint) {
       mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));
@@ -120,7 +119,7 @@ class LogDrive {
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
-    TieVisits(settled_.closures, result);
+    TieVisits(mapper_->options().closures, result);
     result.findings = survey_.findings;
     for (const SensorFinding& finding : survey_.findings) {
       result.warnings.push_back(path_ + ": " + TextOf(finding));
@@ -152,8 +151,8 @@ class LogDrive {
   // With a floor met again as one level, its visits are matched with each other like any others;
   // that takes another drive through the log.
   bool FloorsWereJoined() {
-    const FloorJoining joining =
-        JoinFloors(mapper_->result(), survey_.floors, settled_.floor_joins, settled_.closures);
+    const FloorJoining joining = JoinFloors(mapper_->result(), survey_.floors, settled_.floor_joins,
+                                            mapper_->options().closures);
     if (!joining.any_joined) return false;
     survey_.floors = joining.floors;
     survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());

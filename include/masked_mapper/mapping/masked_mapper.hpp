@@ -29,6 +29,8 @@ class MaskedMapper {
   BuildingMap Finish();
 
   const BuildingMap& result() const { return result_; }
+  /// As settled for their source of motion.
+  const MappingOptions& options() const { return options_; }
 
   // For checkpoints; all of this stands in checkpoint.cpp.
   /// Everything that the observations so far left behind, but for the parts that only grow and for
