@@ -201,6 +201,16 @@ TEST(MapFileReader, UpgradesVersion1) {
   }
 }
 
+/// A map whose rows were changed by hand: the checksums are right, what they say may not be.
+void WriteChanged(const BuildingMap& map, const fs::path& path, const std::string& change) {
+  WriteMapFile({}, map, path);
+  Database database(path, OpenMode::kWrite);
+  database.Run("PRAGMA foreign_keys = OFF");
+  database.Run(change);
+  database.Run("DELETE FROM content");
+  Seal(database);
+}
+
 TEST(MapFileReader, RefusesDrivesThatDoNotHoldTogether) {
   const TestFolder folder;
   int number = 0;
@@ -218,14 +228,7 @@ TEST(MapFileReader, RefusesDrivesThatDoNotHoldTogether) {
            "UPDATE scans SET trajectory_index = 0",
        }) {
     const fs::path path = folder / (std::to_string(number++) + ".mmap");
-    WriteMapFile({}, MapOfTwoDrives(), path);
-    {
-      Database database(path, OpenMode::kWrite);
-      database.Run("PRAGMA foreign_keys = OFF");
-      database.Run(change);
-      database.Run("DELETE FROM content");
-      Seal(database);
-    }
+    WriteChanged(MapOfTwoDrives(), path, change);
     EXPECT_NE(Refusal(path).find("damaged"), std::string::npos) << change;
   }
 }
@@ -264,26 +267,9 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
            "UPDATE log_statistics SET value = 'many' WHERE key = 'scans'",
        }) {
     const fs::path path = folder / (std::to_string(number++) + ".mmap");
-    WriteMapFile({}, SampleMap(), path);
-    {
-      Database database(path, OpenMode::kWrite);
-      database.Run("PRAGMA foreign_keys = OFF");
-      database.Run(change);
-      database.Run("DELETE FROM content");
-      Seal(database);
-    }
+    WriteChanged(SampleMap(), path, change);
     EXPECT_FALSE(Refusal(path).empty()) << change;
   }
-}
-
-/// A map whose rows were changed by hand: the checksums are right, what they say may not be.
-void WriteChanged(const fs::path& path, const std::string& change) {
-  WriteMapFile({}, SampleMap(), path);
-  Database database(path, OpenMode::kWrite);
-  database.Run("PRAGMA foreign_keys = OFF");
-  database.Run(change);
-  database.Run("DELETE FROM content");
-  Seal(database);
 }
 
 // Finite numbers that no covariance has: a solve would find nothing to divide by.
@@ -297,8 +283,9 @@ TEST(MapFileReader, RefusesCovariancesThatAreNone) {
              "substr(covariance, 1, 8) || x'000000000000F03F' || substr(covariance, 17)",
          }) {
       const fs::path path = folder / (std::to_string(number++) + ".mmap");
-      WriteChanged(path, std::string("UPDATE ") + table + " SET covariance = CAST(" + covariance +
-                             " AS BLOB) WHERE id = 2");
+      WriteChanged(SampleMap(), path,
+                   std::string("UPDATE ") + table + " SET covariance = CAST(" + covariance +
+                       " AS BLOB) WHERE id = 2");
       EXPECT_NE(Refusal(path).find("a covariance that is none"), std::string::npos)
           << table << ": " << covariance;
     }
@@ -308,7 +295,7 @@ TEST(MapFileReader, RefusesCovariancesThatAreNone) {
 SavedMap WithOptions(const fs::path& path, const std::vector<std::string>& changes) {
   std::string all;
   for (const std::string& change : changes) all += change + ";";
-  WriteChanged(path, all);
+  WriteChanged(SampleMap(), path, all);
   return ReadMapFile(path);
 }
 
