@@ -63,7 +63,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # Archives have no libraries of their own to ask for: what masked_mapperConfig.cmake looks for.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libpcl-dev, liboctomap-dev, libceres-dev, libyaml-cpp-dev, zlib1g-dev, \
-libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libfastcdr-dev")
+libbz2-dev, libdeflate-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libfastcdr-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "Library, headers and CMake package, to build programs and masks of one's own.")
 include(CPack)

@@ -14,7 +14,7 @@ foreach(component common io)
   endif()
 endforeach()
 
-foreach(library lz4 zstd)
+foreach(library deflate lz4 zstd)
   if(NOT TARGET ${library}_only)
     string(TOUPPER ${library} name)
     find_library(${name}_LIBRARY ${library} REQUIRED)

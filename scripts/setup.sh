@@ -7,8 +7,8 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build
   libeigen3-dev libpcl-dev liboctomap-dev libceres-dev
-  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libbz2-dev liblz4-dev libzstd-dev
-  libsqlite3-dev libfastcdr-dev
+  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libbz2-dev libdeflate-dev
+  liblz4-dev libzstd-dev libsqlite3-dev libfastcdr-dev
   libgtest-dev
 )
 checks=(

@@ -116,7 +116,6 @@ std::optional<McapChunk> ParseMcapChunk(const unsigned char* data, std::size_t s
 
 std::string McapUnpacker::Unpack(const McapChunk& chunk, bool is_cut, Bytes* packed,
                                  Bytes* records) {
-  records->clear();
   const bool is_plain = chunk.compression.empty();
   const bool is_lz4 = chunk.compression == "lz4";
   if (!is_plain && !is_lz4 && chunk.compression != "zstd") {

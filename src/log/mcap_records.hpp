@@ -134,7 +134,7 @@ class McapUnpacker {
  public:
   /// What is wrong with a chunk, in words; empty: nothing, and `*records` is what it holds. Of a
   /// chunk whose end is missing (`is_cut`) that is its beginning, and no checksum holds. What
-  /// `*packed` held is lost.
+  /// `*packed` held is lost. What `*records` had before is room, and is not filled anew.
   std::string Unpack(const McapChunk& chunk, bool is_cut, Bytes* packed, Bytes* records);
 
  private:

@@ -202,7 +202,11 @@ std::unique_ptr<Unpacker> MakeUnpacker(Packing packing) {
 bool UnpackAll(Unpacker* unpacker, const unsigned char* data, std::size_t size, std::size_t limit,
                Bytes* out) {
   constexpr std::size_t kFirstRoom = std::size_t{1} << 16U;
+  constexpr std::size_t kUsualRatio = 8;
   unpacker->Restart();
+  // Where all of a frame has room, zstd writes it there at once; else all is copied once more.
+  const std::size_t usual = kUsualRatio * std::min(size, limit);
+  out->resize(std::max(out->size(), std::min(limit, std::max(kFirstRoom, usual))));
   std::size_t used = 0;
   Unpacker::State state = Unpacker::State::kMore;
   while (state == Unpacker::State::kMore && used < limit) {
