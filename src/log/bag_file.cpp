@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/bag_file.hpp"
+#include "bag_file.hpp"
 
 #include <algorithm>
 #include <set>
@@ -35,11 +35,9 @@ std::optional<double> TimeOf(std::string_view field) {
          1e-9 * static_cast<double>(LittleEndian(bytes + 4, 4));
 }
 
-}  // namespace
-
-class BagFile::Impl {
+class BagFile final : public RosBag {
  public:
-  Impl(const std::string& path, const std::string& shown_name)
+  BagFile(const std::string& path, const std::string& shown_name)
       : name_(shown_name), file_(path, shown_name) {
     CheckVersion();
     first_record_ = file_.position();
@@ -47,7 +45,7 @@ class BagFile::Impl {
     Rewind();
   }
 
-  std::optional<BagMessage> Next() {
+  std::optional<BagMessage> Next() override {
     while (true) {
       if (chunk_position_ < chunk_.size()) {
         if (const std::optional<BagMessage> message = NextInChunk()) return message;
@@ -59,7 +57,7 @@ class BagFile::Impl {
     }
   }
 
-  void Rewind() {
+  void Rewind() override {
     file_.Seek(first_record_);
     chunk_.clear();
     chunk_position_ = 0;
@@ -68,14 +66,16 @@ class BagFile::Impl {
     damaged_ = 0;
   }
 
-  const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
-  bool is_indexed() const { return is_indexed_; }
-  std::optional<double> end_time() const {
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return connections_;
+  }
+  bool IsIndexed() const override { return is_indexed_; }
+  std::optional<double> EndTime() const override {
     return is_indexed_ && end_time_ > 0.0 ? std::optional<double>(end_time_) : std::nullopt;
   }
-  bool truncated() const { return truncated_; }
-  std::uint64_t damaged() const { return damaged_; }
-  double Progress() const {
+  bool Truncated() const override { return truncated_; }
+  std::uint64_t Damaged() const override { return damaged_; }
+  double Progress() const override {
     return at_end_ ? 1.0
                    : static_cast<double>(file_.position()) / static_cast<double>(file_.size());
   }
@@ -293,19 +293,10 @@ class BagFile::Impl {
   bool chunk_is_cut_ = false;
 };
 
-BagFile::BagFile(const std::string& path, const std::string& shown_name)
-    : impl_(std::make_unique<Impl>(path, shown_name)) {}
-BagFile::~BagFile() = default;
+}  // namespace
 
-std::optional<BagMessage> BagFile::Next() { return impl_->Next(); }
-void BagFile::Rewind() { impl_->Rewind(); }
-const std::map<std::uint32_t, BagConnection>& BagFile::Connections() const {
-  return impl_->connections();
+std::unique_ptr<RosBag> OpenRos1Bag(const std::string& path, const std::string& shown_name) {
+  return std::make_unique<BagFile>(path, shown_name);
 }
-bool BagFile::IsIndexed() const { return impl_->is_indexed(); }
-std::optional<double> BagFile::EndTime() const { return impl_->end_time(); }
-bool BagFile::Truncated() const { return impl_->truncated(); }
-std::uint64_t BagFile::Damaged() const { return impl_->damaged(); }
-double BagFile::Progress() const { return impl_->Progress(); }
 
 }  // namespace masked_mapper

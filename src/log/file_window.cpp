@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "masked_mapper/text/input_error.hpp"
-
 namespace masked_mapper {
 namespace {
 
@@ -13,23 +11,20 @@ constexpr std::size_t kWindow = std::size_t{16} << 10U;
 }  // namespace
 
 FileWindow::FileWindow(const std::string& path, std::string shown_name)
-    : name_(std::move(shown_name)), file_(path, name_) {
-  // The window is the buffer.
-  std::setvbuf(file_.stream.get(), nullptr, _IONBF, 0);
+    : file_(path, std::move(shown_name)) {
+  file_.LeaveUnbuffered();  // the window is the buffer
 }
 
 void FileWindow::Fill(std::uint64_t offset, unsigned char* to, std::size_t count) {
-  if (::fseeko(file_.stream.get(), static_cast<off_t>(offset), SEEK_SET) != 0 ||
-      std::fread(to, 1, count, file_.stream.get()) != count) {
-    throw InputError(name_ + ": cannot be read");
-  }
+  file_.Seek(offset);
+  file_.Read(to, count);
 }
 
 const unsigned char* FileWindow::At(std::uint64_t offset, std::size_t count, std::size_t* found) {
   *found = static_cast<std::size_t>(
-      std::min<std::uint64_t>(count, file_.size - std::min(file_.size, offset)));
+      std::min<std::uint64_t>(count, file_.size() - std::min(file_.size(), offset)));
   if (offset < window_begin_ || offset + *found > window_begin_ + window_.size()) {
-    window_.resize(std::min<std::uint64_t>(std::max(kWindow, *found), file_.size - offset));
+    window_.resize(std::min<std::uint64_t>(std::max(kWindow, *found), file_.size() - offset));
     window_begin_ = offset;
     Fill(offset, window_.data(), window_.size());
   }

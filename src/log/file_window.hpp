@@ -15,8 +15,8 @@ class FileWindow {
   /// Throws InputError when the file cannot be read.
   explicit FileWindow(const std::string& path, std::string shown_name);
 
-  std::uint64_t size() const { return file_.size; }
-  const std::string& name() const { return name_; }
+  std::uint64_t size() const { return file_.size(); }
+  const std::string& name() const { return file_.name(); }
   /// At most `count` bytes, as many as the file has there; valid until the next call.
   const unsigned char* At(std::uint64_t offset, std::size_t count, std::size_t* found);
   /// `count` bytes that the file has.
@@ -25,7 +25,6 @@ class FileWindow {
  private:
   void Fill(std::uint64_t offset, unsigned char* to, std::size_t count);
 
-  std::string name_;
   RegularFile file_;
   Bytes window_;
   std::uint64_t window_begin_ = 0;

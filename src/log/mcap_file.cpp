@@ -46,11 +46,9 @@ struct OpenSegment {
   }
 };
 
-}  // namespace
-
-class McapFile::Impl {
+class McapFile final : public RosBag {
  public:
-  Impl(const std::string& path, const std::string& shown_name)
+  McapFile(const std::string& path, const std::string& shown_name)
       : file_(path, shown_name), outline_(OutlineMcap(&file_)) {
     if (!outline_.knows_all_channels) FindChannels();
     for (const auto& [id, channel] : outline_.channels.channels) Connect(channel);
@@ -58,7 +56,7 @@ class McapFile::Impl {
     Rewind();
   }
 
-  std::optional<BagMessage> Next() {
+  std::optional<BagMessage> Next() override {
     while (true) {
       CloseFinished();
       OpenDue();
@@ -81,7 +79,7 @@ class McapFile::Impl {
     }
   }
 
-  void Rewind() {
+  void Rewind() override {
     open_.clear();
     open_bytes_ = 0;
     next_segment_ = 0;
@@ -90,11 +88,14 @@ class McapFile::Impl {
     first_damage_ = outline_.first_damage;
   }
 
-  const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
-  bool truncated() const { return outline_.truncated; }
-  std::uint64_t damaged() const { return damaged_; }
-  const std::string& first_damage() const { return first_damage_; }
-  double Progress() const {
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return connections_;
+  }
+  bool IsIndexed() const override { return true; }
+  bool Truncated() const override { return outline_.truncated; }
+  std::uint64_t Damaged() const override { return damaged_; }
+  std::string FirstDamage() const override { return first_damage_; }
+  double Progress() const override {
     if (next_segment_ == outline_.segments.size()) return 1.0;
     return static_cast<double>(read_bytes_) / static_cast<double>(total_bytes_);
   }
@@ -230,18 +231,10 @@ class McapFile::Impl {
   std::string first_damage_;
 };
 
-McapFile::McapFile(const std::string& path, const std::string& shown_name)
-    : impl_(std::make_unique<Impl>(path, shown_name)) {}
-McapFile::~McapFile() = default;
+}  // namespace
 
-std::optional<BagMessage> McapFile::Next() { return impl_->Next(); }
-void McapFile::Rewind() { impl_->Rewind(); }
-const std::map<std::uint32_t, BagConnection>& McapFile::Connections() const {
-  return impl_->connections();
+std::unique_ptr<RosBag> OpenMcap(const std::string& path, const std::string& shown_name) {
+  return std::make_unique<McapFile>(path, shown_name);
 }
-bool McapFile::Truncated() const { return impl_->truncated(); }
-std::uint64_t McapFile::Damaged() const { return impl_->damaged(); }
-std::string McapFile::FirstDamage() const { return impl_->first_damage(); }
-double McapFile::Progress() const { return impl_->Progress(); }
 
 }  // namespace masked_mapper

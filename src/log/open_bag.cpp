@@ -9,12 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "bag_around_bag.hpp"
+#include "bag_file.hpp"
 #include "bag_sequence.hpp"
-#include "masked_mapper/log/bag_file.hpp"
-#include "masked_mapper/log/ros2_bag_file.hpp"
 #include "masked_mapper/log/text_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "mcap_file.hpp"
+#include "ros2_bag_file.hpp"
 #include "spooled_file.hpp"
 #include "unpacking.hpp"
 
@@ -65,36 +66,22 @@ Beginning BeginningOf(const std::string& path) {
 }
 
 std::unique_ptr<RosBag> OpenPlain(BagKind kind, const std::string& path, const std::string& shown) {
-  if (kind == BagKind::kSqlite) return std::make_unique<Ros2BagFile>(path, shown);
-  if (kind == BagKind::kMcap) return std::make_unique<McapFile>(path, shown);
-  return std::make_unique<BagFile>(path, shown);
+  if (kind == BagKind::kSqlite) return OpenSqliteBag(path, shown);
+  if (kind == BagKind::kMcap) return OpenMcap(path, shown);
+  return OpenRos1Bag(path, shown);
 }
 
 /// What is unpacked of a bag. A cut stream does not show in all kinds of file.
-class SpooledBag final : public RosBag {
+class SpooledBag final : public BagAroundBag {
  public:
-  SpooledBag(BagKind kind, const std::string& path) {
-    // The file stays readable while it is open, and is gone whatever happens to the program.
-    const SpooledFile spooled(path);
-    truncated_ = spooled.truncated();
-    bag_ = OpenPlain(kind, spooled.path(), path);
-  }
+  // The file stays readable while it is open, and is gone whatever happens to the program.
+  SpooledBag(BagKind kind, const SpooledFile& spooled, const std::string& shown)
+      : BagAroundBag(OpenPlain(kind, spooled.path(), shown)), truncated_(spooled.truncated()) {}
 
-  std::optional<BagMessage> Next() override { return bag_->Next(); }
-  void Rewind() override { bag_->Rewind(); }
-  const std::map<std::uint32_t, BagConnection>& Connections() const override {
-    return bag_->Connections();
-  }
-  bool IsIndexed() const override { return bag_->IsIndexed(); }
-  std::optional<double> EndTime() const override { return bag_->EndTime(); }
-  bool Truncated() const override { return truncated_ || bag_->Truncated(); }
-  std::uint64_t Damaged() const override { return bag_->Damaged(); }
-  std::string FirstDamage() const override { return bag_->FirstDamage(); }
-  double Progress() const override { return bag_->Progress(); }
+  bool Truncated() const override { return truncated_ || BagAroundBag::Truncated(); }
 
  private:
-  std::unique_ptr<RosBag> bag_;
-  bool truncated_ = false;
+  bool truncated_;
 };
 
 /// .db3 and .mcap files, packed or not.
@@ -139,7 +126,7 @@ std::unique_ptr<RosBag> OpenBag(const std::string& path) {
   }
   const Beginning beginning = BeginningOf(path);
   if (beginning.is_packed && beginning.kind != BagKind::kNone) {
-    return std::make_unique<SpooledBag>(beginning.kind, path);
+    return std::make_unique<SpooledBag>(beginning.kind, SpooledFile(path), path);
   }
   if (beginning.kind == BagKind::kNone && fs::is_regular_file(path, error)) {
     throw InputError(path + ": is not a ROS bag (.bag, .db3 or .mcap)");

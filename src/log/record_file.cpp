@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "masked_mapper/text/input_error.hpp"
-
 namespace masked_mapper {
 namespace {
 
@@ -14,7 +12,7 @@ constexpr std::uint64_t kLargestHeader = std::uint64_t{1} << 20U;
 }  // namespace
 
 RecordFile::RecordFile(const std::string& path, std::string shown_name)
-    : name_(std::move(shown_name)), file_(path, name_) {}
+    : file_(path, std::move(shown_name)) {}
 
 bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
   std::uint64_t header_size = 0;
@@ -26,30 +24,27 @@ bool RecordFile::ReadHeader(RecordHeader* header, std::uint64_t* data_size) {
 
 bool RecordFile::ReadLength(std::uint64_t* length) {
   unsigned char bytes[4];
-  if (left() < 4 || std::fread(bytes, 1, 4, file_.stream.get()) != 4) return false;
-  position_ += 4;
-  *length = LittleEndian(bytes, 4);
+  if (left() < sizeof(bytes)) return false;
+  file_.Read(bytes, sizeof(bytes));
+  position_ += sizeof(bytes);
+  *length = LittleEndian(bytes, sizeof(bytes));
   return true;
 }
 
 void RecordFile::Read(std::uint64_t count, std::vector<unsigned char>* bytes) {
   bytes->resize(count);
-  if (std::fread(bytes->data(), 1, count, file_.stream.get()) != count) {
-    throw InputError(name_ + ": cannot be read");
-  }
+  file_.Read(bytes->data(), count);
   position_ += count;
 }
 
 bool RecordFile::Skip(std::uint64_t count) {
   const bool fits = count <= left();
-  Seek(fits ? position_ + count : file_.size);
+  Seek(fits ? position_ + count : file_.size());
   return fits;
 }
 
 void RecordFile::Seek(std::uint64_t position) {
-  if (::fseeko(file_.stream.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
-    throw InputError(name_ + ": cannot be read");
-  }
+  file_.Seek(position);
   position_ = position;
 }
 

@@ -16,9 +16,9 @@ class RecordFile {
   /// Throws InputError, as all below: cannot be opened or read.
   RecordFile(const std::string& path, std::string shown_name);
 
-  std::uint64_t size() const { return file_.size; }
+  std::uint64_t size() const { return file_.size(); }
   std::uint64_t position() const { return position_; }
-  std::uint64_t left() const { return file_.size - position_; }
+  std::uint64_t left() const { return file_.size() - position_; }
 
   /// The header of the record at the position, and the length of its data, whose first byte is then
   /// the position. False when there is none. The header's bytes stay until the next call.
@@ -32,7 +32,6 @@ class RecordFile {
  private:
   bool ReadLength(std::uint64_t* length);
 
-  std::string name_;
   RegularFile file_;
   std::uint64_t position_ = 0;
   std::vector<unsigned char> header_bytes_;

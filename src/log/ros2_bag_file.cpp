@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "ros2_bag_file.hpp"
 
 #include <cstdint>
 #include <utility>
@@ -12,11 +12,9 @@ namespace {
 
 constexpr std::size_t kLargestMessage = std::size_t{64} << 20U;
 
-}  // namespace
-
-class Ros2BagFile::Impl {
+class Ros2BagFile final : public RosBag {
  public:
-  Impl(const std::string& path, const std::string& shown_name) : file_(path, shown_name) {
+  Ros2BagFile(const std::string& path, const std::string& shown_name) : file_(path, shown_name) {
     for (const auto& [id, topic] : file_.topics()) {
       const auto number = static_cast<std::uint32_t>(connections_.size());
       connections_.emplace(number, topic);
@@ -24,7 +22,7 @@ class Ros2BagFile::Impl {
     }
   }
 
-  std::optional<BagMessage> Next() {
+  std::optional<BagMessage> Next() override {
     while (const auto row = file_.Next()) {
       const auto number = numbers_.find(row->topic);
       BagMessage message;
@@ -44,16 +42,21 @@ class Ros2BagFile::Impl {
     return std::nullopt;
   }
 
-  void Rewind() {
+  void Rewind() override {
     file_.Rewind();
     damaged_ = 0;
   }
 
-  const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
-  double end_time() const { return 1e-9 * static_cast<double>(file_.last_time()); }
-  bool truncated() const { return file_.damaged(); }
-  std::uint64_t damaged() const { return damaged_; }
-  double Progress() const { return file_.Progress(); }
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return connections_;
+  }
+  bool IsIndexed() const override { return true; }
+  std::optional<double> EndTime() const override {
+    return 1e-9 * static_cast<double>(file_.last_time());
+  }
+  bool Truncated() const override { return file_.damaged(); }
+  std::uint64_t Damaged() const override { return damaged_; }
+  double Progress() const override { return file_.Progress(); }
 
  private:
   bool Unpack(BagMessage* message) {
@@ -73,18 +76,10 @@ class Ros2BagFile::Impl {
   std::uint64_t damaged_ = 0;
 };
 
-Ros2BagFile::Ros2BagFile(const std::string& path, const std::string& shown_name)
-    : impl_(std::make_unique<Impl>(path, shown_name)) {}
-Ros2BagFile::~Ros2BagFile() = default;
+}  // namespace
 
-std::optional<BagMessage> Ros2BagFile::Next() { return impl_->Next(); }
-void Ros2BagFile::Rewind() { impl_->Rewind(); }
-const std::map<std::uint32_t, BagConnection>& Ros2BagFile::Connections() const {
-  return impl_->connections();
+std::unique_ptr<RosBag> OpenSqliteBag(const std::string& path, const std::string& shown_name) {
+  return std::make_unique<Ros2BagFile>(path, shown_name);
 }
-std::optional<double> Ros2BagFile::EndTime() const { return impl_->end_time(); }
-bool Ros2BagFile::Truncated() const { return impl_->truncated(); }
-std::uint64_t Ros2BagFile::Damaged() const { return impl_->damaged(); }
-double Ros2BagFile::Progress() const { return impl_->Progress(); }
 
 }  // namespace masked_mapper

@@ -108,7 +108,7 @@ class SortedBag::Run {
 
 SortedBag::SortedBag(std::unique_ptr<RosBag> bag,
                      const std::function<bool(std::uint32_t)>& is_wanted, std::size_t run_bytes)
-    : bag_(std::move(bag)), file_(std::make_unique<File>()) {
+    : BagAroundBag(std::move(bag)), file_(std::make_unique<File>()) {
   std::vector<unsigned char> bytes;
   std::vector<Entry> entries;
   const auto close_run = [&] {
@@ -117,7 +117,7 @@ SortedBag::SortedBag(std::unique_ptr<RosBag> bag,
     runs_.push_back(std::make_unique<Run>(bytes, std::exchange(entries, {}), file_.get()));
     bytes.clear();
   };
-  while (const std::optional<BagMessage> message = bag_->Next()) {
+  while (const std::optional<BagMessage> message = this->bag().Next()) {
     const std::size_t size = is_wanted(message->connection) ? message->size : 0;
     entries.push_back({message->time, message->connection, message->encoding, bytes.size(), size});
     if (size > 0) bytes.insert(bytes.end(), message->data, message->data + size);

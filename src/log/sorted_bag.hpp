@@ -9,11 +9,11 @@
 #include <memory>
 #include <vector>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "bag_around_bag.hpp"
 
 namespace masked_mapper {
 
-class SortedBag final : public RosBag {
+class SortedBag final : public BagAroundBag {
  public:
   /// `is_wanted`: whether the messages of a connection are to be kept; of the others only that they
   /// were there. Reads the bag to its end. Throws InputError: no room for the temporary file.
@@ -23,19 +23,13 @@ class SortedBag final : public RosBag {
 
   std::optional<BagMessage> Next() override;
   void Rewind() override;
-  const std::map<std::uint32_t, BagConnection>& Connections() const override {
-    return bag_->Connections();
-  }
   bool IsIndexed() const override { return true; }
-  bool Truncated() const override { return bag_->Truncated(); }
-  std::uint64_t Damaged() const override { return bag_->Damaged(); }
   double Progress() const override;
 
  private:
   class File;
   class Run;
 
-  std::unique_ptr<RosBag> bag_;
   std::unique_ptr<File> file_;
   std::vector<std::unique_ptr<Run>> runs_;
   std::vector<std::size_t> open_runs_;  ///< that have a message left, in their order

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/text_source.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <vector>
 
 #include "masked_mapper/text/ends_with.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "regular_file.hpp"
 #include "unpacking.hpp"
 
 namespace masked_mapper {
@@ -18,41 +15,18 @@ namespace {
 
 constexpr std::size_t kFileBlock = 128 * 1024;
 
-/// Size of a regular file; throws InputError for anything else.
-std::uint64_t RegularFileSize(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw InputError(path + ": " + (errno == ENOENT ? "no such file" : std::strerror(errno)));
-  }
-  if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a directory, expected a log file");
-  if (!S_ISREG(status.st_mode)) throw InputError(path + ": is not a regular file");
-  return static_cast<std::uint64_t>(status.st_size);
-}
-
 }  // namespace
 
 class TextSource::Impl {
  public:
-  explicit Impl(const std::string& path)
-      : path_(path), file_size_(RegularFileSize(path)), input_(kFileBlock) {
-    file_ = std::fopen(path.c_str(), "rb");
-    if (file_ == nullptr) throw InputError(path + ": " + std::strerror(errno));
-    try {
-      Refill();
-      packing_ = PackingHere();
-      if (packing_ != Packing::kGzip && file_size_ > 0 && EndsWith(path, ".gz")) {
-        throw InputError(path + ": named .gz, but not gzip");
-      }
-      unpacker_ = MakeUnpacker(packing_);
-    } catch (...) {
-      std::fclose(file_);
-      throw;
+  explicit Impl(const std::string& path) : file_(path, path), input_(kFileBlock) {
+    Refill();
+    packing_ = PackingHere();
+    if (packing_ != Packing::kGzip && file_.size() > 0 && EndsWith(path, ".gz")) {
+      throw InputError(path + ": named .gz, but not gzip");
     }
+    unpacker_ = MakeUnpacker(packing_);
   }
-
-  ~Impl() { std::fclose(file_); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
   std::size_t Read(char* buffer, std::size_t capacity) {
     return IsPacked() ? ReadPacked(buffer, capacity) : ReadPlain(buffer, capacity);
@@ -62,9 +36,9 @@ class TextSource::Impl {
   bool truncated() const { return truncated_; }
   std::uint64_t trailing_bytes() const { return trailing_bytes_; }
   double Progress() const {
-    if (file_size_ == 0) return 1.0;
+    if (file_.size() == 0) return 1.0;
     const std::uint64_t consumed = bytes_read_ - (input_end_ - input_begin_);
-    return std::min(1.0, static_cast<double>(consumed) / static_cast<double>(file_size_));
+    return std::min(1.0, static_cast<double>(consumed) / static_cast<double>(file_.size()));
   }
 
  private:
@@ -74,8 +48,7 @@ class TextSource::Impl {
     input_end_ -= input_begin_;
     input_begin_ = 0;
     const std::size_t count =
-        std::fread(input_.data() + input_end_, 1, input_.size() - input_end_, file_);
-    if (count == 0 && std::ferror(file_) != 0) throw InputError(path_ + ": cannot be read");
+        file_.ReadSome(input_.data() + input_end_, input_.size() - input_end_);
     input_end_ += count;
     bytes_read_ += count;
     return count > 0;
@@ -129,7 +102,8 @@ class TextSource::Impl {
       unpacker_->Restart();
       return;
     }
-    trailing_bytes_ = file_size_ - std::min(file_size_, bytes_read_ - (input_end_ - input_begin_));
+    trailing_bytes_ =
+        file_.size() - std::min(file_.size(), bytes_read_ - (input_end_ - input_begin_));
     StopUnpacking(false);
   }
 
@@ -139,9 +113,7 @@ class TextSource::Impl {
     input_begin_ = input_end_;
   }
 
-  std::string path_;
-  std::uint64_t file_size_ = 0;
-  std::FILE* file_ = nullptr;
+  RegularFile file_;
   std::vector<unsigned char> input_;
   std::size_t input_begin_ = 0;
   std::size_t input_end_ = 0;

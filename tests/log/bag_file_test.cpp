@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/bag_file.hpp"
+#include "log/bag_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace masked_mapper {
 namespace {
 
-std::size_t CountMessages(BagFile* bag) {
+std::size_t CountMessages(RosBag* bag) {
   std::size_t count = 0;
   while (const std::optional<BagMessage> message = bag->Next()) {
     EXPECT_GT(bag->Connections().count(message->connection), 0U);
@@ -25,23 +25,23 @@ std::size_t CountMessages(BagFile* bag) {
 TEST(BagFileTest, ReadsMessagesInOrderTwice) {
   for (const bool indexed : {true, false}) {
     const TemporaryFile file(".bag", ScanBag(indexed));
-    BagFile bag(file.path(), file.path());
-    EXPECT_EQ(bag.IsIndexed(), indexed);
-    EXPECT_EQ(bag.Connections().size(), indexed ? 1U : 0U);
+    const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+    EXPECT_EQ(bag->IsIndexed(), indexed);
+    EXPECT_EQ(bag->Connections().size(), indexed ? 1U : 0U);
     for (int round = 0; round < 2; ++round) {
       for (std::uint32_t i = 0; i < 12; ++i) {
-        const std::optional<BagMessage> message = bag.Next();
+        const std::optional<BagMessage> message = bag->Next();
         ASSERT_TRUE(message);
         EXPECT_EQ(message->time, 100.5 + i);
         EXPECT_EQ(std::string(reinterpret_cast<const char*>(message->data), message->size),
                   LaserScanBytes(100 + i, 5));
       }
-      EXPECT_FALSE(bag.Next());
-      EXPECT_EQ(bag.Truncated(), !indexed);
-      EXPECT_EQ(bag.Damaged(), 0U);
-      bag.Rewind();
+      EXPECT_FALSE(bag->Next());
+      EXPECT_EQ(bag->Truncated(), !indexed);
+      EXPECT_EQ(bag->Damaged(), 0U);
+      bag->Rewind();
     }
-    EXPECT_EQ(bag.Connections().at(7).type, "sensor_msgs/LaserScan");
+    EXPECT_EQ(bag->Connections().at(7).type, "sensor_msgs/LaserScan");
   }
 }
 
@@ -50,10 +50,10 @@ TEST(BagFileTest, ACutBagGivesWhatItHas) {
   std::size_t last_count = 0;
   for (std::size_t length = BagMagic().size(); length <= bytes.size(); length += 7) {
     const TemporaryFile file(".bag", bytes.substr(0, length));
-    BagFile bag(file.path(), file.path());
-    const std::size_t count = CountMessages(&bag);
+    const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+    const std::size_t count = CountMessages(bag.get());
     EXPECT_GE(count, last_count);
-    EXPECT_EQ(bag.Damaged(), 0U) << length;
+    EXPECT_EQ(bag->Damaged(), 0U) << length;
     last_count = count;
   }
   EXPECT_EQ(last_count, 12U);
@@ -66,9 +66,9 @@ TEST(BagFileTest, ReadsWhatADyingRecorderLeft) {
   const TemporaryFile file(".bag", BagMagic() + BagHeaderRecord(0, 0, 0) + ChunkRecord("") +
                                        connection + MessageRecord(1, 5, "abc") +
                                        MessageRecord(1, 6, "def").substr(0, 30));
-  BagFile bag(file.path(), file.path());
-  EXPECT_EQ(CountMessages(&bag), 1U);
-  EXPECT_TRUE(bag.Truncated());
+  const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+  EXPECT_EQ(CountMessages(bag.get()), 1U);
+  EXPECT_TRUE(bag->Truncated());
 }
 
 TEST(BagFileTest, GoesOnAtTheNextChunkBehindADamagedRecord) {
@@ -76,9 +76,9 @@ TEST(BagFileTest, GoesOnAtTheNextChunkBehindADamagedRecord) {
   const std::size_t second_chunk = bytes.find("compression", bytes.find("compression") + 10) - 8;
   bytes[second_chunk + 3] = '\x7f';  // an absurd length
   const TemporaryFile file(".bag", bytes);
-  BagFile bag(file.path(), file.path());
-  EXPECT_GE(CountMessages(&bag), 8U);
-  EXPECT_TRUE(bag.Truncated());
+  const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+  EXPECT_GE(CountMessages(bag.get()), 8U);
+  EXPECT_TRUE(bag->Truncated());
 }
 
 TEST(BagFileTest, IndexRecordsOfTheFirstRecordersStateAWrongLength) {
@@ -94,9 +94,9 @@ TEST(BagFileTest, IndexRecordsOfTheFirstRecordersStateAWrongLength) {
                                    (ChunkRecord("").find("compression"));
   bytes.insert(second_chunk, wrong);
   const TemporaryFile file(".bag", bytes);
-  BagFile bag(file.path(), file.path());
-  EXPECT_EQ(CountMessages(&bag), 12U);
-  EXPECT_EQ(bag.Damaged(), 0U);
+  const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+  EXPECT_EQ(CountMessages(bag.get()), 12U);
+  EXPECT_EQ(bag->Damaged(), 0U);
 }
 
 TEST(BagFileTest, DamagedCompressionIsCountedNotFatal) {
@@ -108,8 +108,8 @@ TEST(BagFileTest, DamagedCompressionIsCountedNotFatal) {
     }
     if (std::string(compression).size() != 3) continue;
     const TemporaryFile file(".bag", bytes);
-    BagFile bag(file.path(), file.path());
-    CountMessages(&bag);
+    const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
+    CountMessages(bag.get());
   }
 }
 
@@ -117,7 +117,7 @@ TEST(BagFileTest, RefusesOtherVersionsAndWhatIsNoBag) {
   const auto message = [](const std::string& bytes) -> std::string {
     const TemporaryFile file(".bag", bytes);
     try {
-      BagFile bag(file.path(), file.path());
+      OpenRos1Bag(file.path(), file.path());
     } catch (const InputError& error) {
       return error.what();
     }
@@ -130,7 +130,7 @@ TEST(BagFileTest, RefusesOtherVersionsAndWhatIsNoBag) {
       message(BagMagic() + BagRecord({{"op", Op(3)}, {"encryptor", "AES"}}, "")).find("encrypted"),
       std::string::npos);
   EXPECT_EQ(message(BagMagic()), "");
-  EXPECT_THROW(BagFile("/no/such.bag", "x.bag"), InputError);
+  EXPECT_THROW(OpenRos1Bag("/no/such.bag", "x.bag"), InputError);
 }
 
 // Whatever the bytes are, the reader ends; sanitizers watch over this test.
@@ -145,9 +145,9 @@ TEST(BagFileTest, SurvivesGarbledBytes) {
     }
     const TemporaryFile file(".bag", bytes);
     try {
-      BagFile bag(file.path(), file.path());
+      const std::unique_ptr<RosBag> bag = OpenRos1Bag(file.path(), file.path());
       std::size_t count = 0;
-      while (bag.Next()) ++count;
+      while (bag->Next()) ++count;
       EXPECT_LE(count, 100U);
     } catch (const InputError&) {
     }

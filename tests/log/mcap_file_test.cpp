@@ -22,21 +22,21 @@ struct McapContent {
 
 McapContent ReadMcap(const std::string& bytes) {
   const TemporaryFile file(".mcap", bytes);
-  McapFile mcap(file.path(), "x.mcap");
+  const std::unique_ptr<RosBag> mcap = OpenMcap(file.path(), "x.mcap");
   McapContent content;
   for (int round = 0; round < 2; ++round) {
     content = {};
-    while (const std::optional<BagMessage> message = mcap.Next()) {
-      EXPECT_EQ(mcap.Connections().count(message->connection), 1U);
+    while (const std::optional<BagMessage> message = mcap->Next()) {
+      EXPECT_EQ(mcap->Connections().count(message->connection), 1U);
       content.messages.emplace_back(
           message->time, std::string(reinterpret_cast<const char*>(message->data), message->size));
     }
-    EXPECT_EQ(mcap.Progress(), 1.0);
-    content.connections = mcap.Connections();
-    content.truncated = mcap.Truncated();
-    content.damaged = mcap.Damaged();
-    content.first_damage = mcap.FirstDamage();
-    mcap.Rewind();
+    EXPECT_EQ(mcap->Progress(), 1.0);
+    content.connections = mcap->Connections();
+    content.truncated = mcap->Truncated();
+    content.damaged = mcap->Damaged();
+    content.first_damage = mcap->FirstDamage();
+    mcap->Rewind();
   }
   return content;
 }
@@ -211,7 +211,7 @@ TEST(McapFileTest, RefusesOtherVersionsAndWhatIsNoMcap) {
   EXPECT_EQ(refusal("\x89MCAP1\r\n"), "x.mcap: is MCAP of version `1`; version 0 is read");
   EXPECT_EQ(refusal("something"), "x.mcap: is not an MCAP file");
   EXPECT_EQ(refusal(kMcapMagicBytes), "");
-  EXPECT_THROW(McapFile("/no/such.mcap", "x"), InputError);
+  EXPECT_THROW(OpenMcap("/no/such.mcap", "x"), InputError);
 }
 
 // Whatever the bytes are, the reader ends; sanitizers watch over this test.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/ros2_bag_file.hpp"
+#include "log/ros2_bag_file.hpp"
 
 #include <gtest/gtest.h>
 
