@@ -46,17 +46,19 @@ class TopicChoice {
     }
   }
 
-  BagPlan Choose(const LogOptions& options) const {
+  /// Throws InputError with all that the user is to choose or to mend, so that it is told once.
+  BagPlan Choose(const LogOptions& options) {
     BagPlan plan;
     for (const std::string& name : Pick({TopicKind::kScan, TopicKind::kMultiEcho}, "scan",
                                         "log.scan_topic", options.scan_topic)) {
       plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
-    if (plan.scanners == 0) return plan;
+    if (plan.scanners == 0 && problems_.empty()) return plan;
     AddOne({TopicKind::kOdometry}, "odometry", "log.odometry_topic", options.odometry_topic, &plan);
     plan.has_odometry_topic = plan.topics.size() > plan.scanners;
     AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
     AddOne({TopicKind::kPressure}, "pressure", "log.pressure_topic", options.pressure_topic, &plan);
+    if (!problems_.empty()) throw InputError(path_ + ": " + problems_);
     for (const auto& [name, kind] : kinds_) {
       if (kind == TopicKind::kTransforms) plan.topics.push_back({name, kind, 0, {}});
     }
@@ -67,8 +69,12 @@ class TopicChoice {
   }
 
  private:
+  void AddProblem(const std::string& problem) {
+    problems_ += (problems_.empty() ? "" : "; ") + problem;
+  }
+
   std::vector<std::string> Pick(const std::set<TopicKind>& wanted, const std::string& what,
-                                const std::string& option, const std::string& given) const {
+                                const std::string& option, const std::string& given) {
     std::vector<std::string> candidates;
     for (const auto& [name, kind] : kinds_) {
       if (wanted.count(kind) > 0) candidates.push_back(name);
@@ -78,33 +84,38 @@ class TopicChoice {
       std::vector<std::string> picked = SplitAtCommas(given);
       for (const std::string& name : picked) {
         if (std::count(picked.begin(), picked.end(), name) > 1) {
-          throw InputError(path_ + ": " + option + ": names `" + name + "` twice");
+          AddProblem(option + ": names `" + name + "` twice");
+          return {};
         }
         if (std::find(candidates.begin(), candidates.end(), name) != candidates.end()) continue;
-        throw InputError(path_ + ": " + option + ": no " + what + " topic `" + name + "`" +
-                         DidYouMean(name, candidates) + "; the bag has " +
-                         (candidates.empty() ? "none" : Listed(candidates)));
+        AddProblem(option + ": no " + what + " topic `" + name + "`" +
+                   DidYouMean(name, candidates) + "; the bag has " +
+                   (candidates.empty() ? "none" : Listed(candidates)));
+        return {};
       }
       return picked;
     }
     if (candidates.size() > 1) {
       const bool may_be_merged = wanted.count(TopicKind::kScan) > 0;
-      throw InputError(path_ + ": has several " + what + " topics (" + Listed(candidates) +
-                       "); choose with " + option + "=" + candidates.front() +
-                       (may_be_merged ? ", or several with commas to merge them" : ""));
+      AddProblem("has several " + what + " topics (" + Listed(candidates) + "); choose with " +
+                 option + "=" + candidates.front() +
+                 (may_be_merged ? ", or several with commas to merge them" : ""));
+      return {};
     }
     return candidates;
   }
 
   void AddOne(const std::set<TopicKind>& wanted, const std::string& what, const std::string& option,
-              const std::string& given, BagPlan* plan) const {
+              const std::string& given, BagPlan* plan) {
     const std::vector<std::string> picked = Pick(wanted, what, option, given);
-    if (picked.size() > 1) throw InputError(path_ + ": " + option + ": takes one topic");
-    if (!picked.empty()) plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0, {}});
+    if (picked.size() > 1) AddProblem(option + ": takes one topic");
+    if (picked.size() == 1)
+      plan->topics.push_back({picked.front(), kinds_.at(picked.front()), 0, {}});
   }
 
   std::string path_;
   std::map<std::string, TopicKind> kinds_;
+  std::string problems_;
 };
 
 }  // namespace

@@ -195,6 +195,19 @@ TEST(OpenRosBagTest, RefusesWithOneLine) {
   EXPECT_NE(Message(silent.path()).find("no scan that can be read"), std::string::npos);
 }
 
+TEST(OpenRosBagTest, AllThatIsToBeChosenIsSaidAtOnce) {
+  const std::string odometry_md5 = "cd5e73d190d741a2f92e81eda573aca7";
+  const TemporaryFile file(
+      ".bag", BagMagic() + BagHeaderRecord(0, 0, 0) +
+                  ChunkRecord(ConnectionRecord(1, "/a", "sensor_msgs/LaserScan", kLaserScanMd5) +
+                              ConnectionRecord(2, "/b", "sensor_msgs/LaserScan", kLaserScanMd5) +
+                              ConnectionRecord(3, "/c", "nav_msgs/Odometry", odometry_md5) +
+                              ConnectionRecord(4, "/d", "nav_msgs/Odometry", odometry_md5)));
+  const std::string message = Message(file.path());
+  EXPECT_NE(message.find("log.scan_topic=/a"), std::string::npos) << message;
+  EXPECT_NE(message.find("log.odometry_topic=/c"), std::string::npos) << message;
+}
+
 TEST(OpenRosBagTest, EveryScannerThatIsNamedMustSpeakAndBeNamedOnce) {
   const std::string records =
       ConnectionRecord(1, "/front", "sensor_msgs/LaserScan", kLaserScanMd5) +
