@@ -204,12 +204,7 @@ class BagFile final : public RosBag {
       ++damaged_;
       return std::nullopt;
     }
-    BagMessage message;
-    message.connection = static_cast<std::uint32_t>(*connection);
-    message.time = *time;
-    message.data = data;
-    message.size = size;
-    return message;
+    return BagMessage{static_cast<std::uint32_t>(*connection), *time, data, size};
   }
 
   void LoadChunk(const RecordHeader& header, std::uint64_t data_size) {

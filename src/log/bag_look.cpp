@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bag_look.hpp"
 
+#include <cstdint>
 #include <optional>
 
 #include "bag_evidence.hpp"
+#include "bag_without_scans.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -19,18 +21,27 @@ BagPlan LookAtBag(const std::string& path, const LogOptions& options, const BagP
   BagStreams streams(topics, *bag);
   std::optional<double> begin;
   bool has_scans = false;
+  std::uint64_t malformed_scans = 0;
   while (const std::optional<BagMessage> message = bag->Next()) {
     if (!begin) begin = message->time;
     const std::optional<std::size_t> stream = streams.Find(message->connection);
     if (!stream) continue;
     const auto parsed = ParseMessage(topics.topics[*stream].kind, *message, options);
-    if (!parsed) continue;
+    if (!parsed) {
+      malformed_scans += *stream < topics.scanners ? 1 : 0;
+      continue;
+    }
     has_scans = has_scans || std::holds_alternative<RosLaserScan>(*parsed);
     std::visit([&](const auto& read) { evidence.Add(*stream, message->time, read); }, *parsed);
     const bool long_enough = message->time > *begin + kLongestLook;
     if (!evidence.SilentScanner() && (long_enough || evidence.IsEnough())) break;
   }
-  if (!has_scans) throw InputError(path + ": holds no scan that can be read");
+  if (!has_scans) {
+    throw InputError(
+        path + ": holds no scan that can be read" +
+        (malformed_scans > 0 ? ": all " + std::to_string(malformed_scans) + " are malformed" : "") +
+        DamageOf(*bag));
+  }
   if (const std::optional<std::size_t> silent = evidence.SilentScanner()) {
     throw InputError(path + ": log.scan_topic: `" + topics.topics[*silent].name +
                      "` holds no scan that can be read");

@@ -59,6 +59,15 @@ std::string RemedyFor(const std::map<std::uint32_t, BagConnection>& connections)
 
 }  // namespace
 
+std::string DamageOf(const RosBag& bag) {
+  std::string text;
+  if (bag.Truncated()) text += "; the file is cut off in the middle";
+  if (bag.Damaged() > 0) {
+    text += "; " + std::to_string(bag.Damaged()) + " damaged, the first: " + bag.FirstDamage();
+  }
+  return text;
+}
+
 std::string WhatIsThereInsteadOfScans(RosBag* bag) {
   std::map<std::uint32_t, std::uint64_t> counts;
   while (const std::optional<BagMessage> message = bag->Next()) ++counts[message->connection];
@@ -76,13 +85,8 @@ std::string WhatIsThereInsteadOfScans(RosBag* bag) {
   if (topics.size() > kMostListed) {
     list += ", and " + std::to_string(topics.size() - kMostListed) + " more topics";
   }
-  std::string text = "holds no sensor_msgs/LaserScan (topics: " + (list.empty() ? "none" : list) +
-                     ")" + RemedyFor(bag->Connections());
-  if (bag->Truncated()) text += "; the file is cut off in the middle";
-  if (bag->Damaged() > 0) {
-    text += "; " + std::to_string(bag->Damaged()) + " damaged, the first: " + bag->FirstDamage();
-  }
-  return text;
+  return "holds no sensor_msgs/LaserScan (topics: " + (list.empty() ? "none" : list) + ")" +
+         RemedyFor(bag->Connections()) + DamageOf(*bag);
 }
 
 }  // namespace masked_mapper

@@ -12,4 +12,8 @@ namespace masked_mapper {
 /// them where that is known.
 std::string WhatIsThereInsteadOfScans(RosBag* bag);
 
+/// What is wrong with it as far as it was read, as the end of a line: "; the file is cut off in the
+/// middle". Empty: nothing.
+std::string DamageOf(const RosBag& bag);
+
 }  // namespace masked_mapper

@@ -182,5 +182,18 @@ TEST_F(OpenBagTest, WhatIsNoBagIsSaid) {
   EXPECT_THROW(OpenBag(Write("z.mcap", "nothing of the kind")), InputError);
 }
 
+TEST_F(OpenBagTest, AChunkThatClaimsATerabyteIsNamed) {
+  const std::string described =
+      McapSchemaBytes(1, "sensor_msgs/msg/LaserScan") + McapChannelBytes(1, 1, "/scan");
+  const std::string bomb = Write(
+      "bomb.mcap", McapBytes(described + McapChunkBytes(1, "packed", 1000000000000, 0, "zstd")));
+  EXPECT_NE(Refusal(bomb).find("claims to unpack to 1000000000000 bytes"), std::string::npos)
+      << Refusal(bomb);
+  const std::string malformed =
+      Write("malformed.mcap", McapBytes(described + McapMessageBytes(1, 1, "no scan")));
+  EXPECT_NE(Refusal(malformed).find("all 1 are malformed"), std::string::npos)
+      << Refusal(malformed);
+}
+
 }  // namespace
 }  // namespace masked_mapper
