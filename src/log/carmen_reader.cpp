@@ -2,12 +2,11 @@
 #include "carmen_reader.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <thread>
+#include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/log/bounded_queue.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/line_splitter.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
@@ -15,12 +14,13 @@
 #include "masked_mapper/log/stamp_mender.hpp"
 #include "masked_mapper/log/text_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "text_ahead.hpp"
+#include "unpadded_stamps.hpp"
 
 namespace masked_mapper {
 namespace {
 
-constexpr std::size_t kTextBlock = 256 * 1024;
-constexpr std::size_t kTextBlocksAhead = 4;
+constexpr std::size_t kFirstBlock = 256 * 1024;
 constexpr std::size_t kMostMessageNames = 64;
 
 /// Whether the beginning of a file could be text: no zero bytes, hardly any control characters.
@@ -53,7 +53,7 @@ ScanCalibration LookAt(const std::string& path, const LogOptions& options) {
   TextSource source(path);
   CalibrationFinder finder(options);
   LineSplitter splitter;
-  std::vector<char> block(kTextBlock);
+  std::vector<char> block(kFirstBlock);
   bool settled = false;
   const auto on_line = [&](const char* begin, const char* end, bool too_long) {
     if (settled || too_long) return;
@@ -78,19 +78,11 @@ ScanCalibration LookAt(const std::string& path, const LogOptions& options) {
   return finder.Find();
 }
 
-struct TextBlock {
-  std::string text;
-  double progress = 0.0;
-  bool is_last = false;
-  bool truncated = false;
-  std::uint64_t trailing_bytes = 0;
-};
-
 /// Lines in, mended observations out; the counting.
 class LineReader {
  public:
-  LineReader(const LogOptions& options, const ScanCalibration& calibration)
-      : read_ranges_(options.read_ranges), calibration_(calibration) {
+  LineReader(const LogOptions& options, const ScanCalibration& calibration, bool is_unpadded)
+      : read_ranges_(options.read_ranges), calibration_(calibration), is_unpadded_(is_unpadded) {
     statistics_.max_range = calibration.max_range();
   }
 
@@ -110,6 +102,7 @@ class LineReader {
   void SetTruncated() { statistics_.truncated = true; }
   void SetTrailingBytes(std::uint64_t count) { statistics_.trailing_bytes = count; }
   void Finish() { mender_.Finish(); }
+  const UnpaddedStamps& unpadded_stamps() const { return unpadded_stamps_; }
 
   std::optional<Observation> Next() {
     std::optional<Observation> observation = mender_.Next();
@@ -159,6 +152,8 @@ class LineReader {
 
   void Take(Observation observation, std::uint64_t* count) {
     ++*count;
+    const double meant = unpadded_stamps_.Meant(Stamp(observation), observation.index());
+    if (is_unpadded_) std::visit([meant](auto& reading) { reading.stamp = meant; }, observation);
     mender_.Add(std::move(observation));
   }
 
@@ -170,52 +165,11 @@ class LineReader {
 
   const bool read_ranges_;
   const ScanCalibration& calibration_;
+  const bool is_unpadded_;
+  UnpaddedStamps unpadded_stamps_;
   StampMender mender_;
   LogStatistics statistics_;
   bool has_first_stamp_ = false;
-};
-
-/// The text of a log, decompressed a few blocks ahead.
-class TextAhead {
- public:
-  explicit TextAhead(const std::string& path) : source_(path), thread_([this] { Read(); }) {}
-  ~TextAhead() {
-    blocks_.Close();
-    thread_.join();
-  }
-
-  std::optional<TextBlock> Next() {
-    std::optional<TextBlock> block = blocks_.Pop();
-    if (!block && error_) std::rethrow_exception(error_);
-    return block;
-  }
-
- private:
-  void Read() {
-    try {
-      bool more = true;
-      while (more) {
-        TextBlock block;
-        block.text.resize(kTextBlock);
-        const std::size_t count = source_.Read(block.text.data(), block.text.size());
-        block.text.resize(count);
-        block.is_last = count < kTextBlock;
-        block.progress = block.is_last ? 1.0 : source_.Progress();
-        block.truncated = source_.Truncated();
-        block.trailing_bytes = source_.TrailingBytes();
-        more = !block.is_last;
-        more = blocks_.Push(std::move(block)) && more;
-      }
-    } catch (...) {
-      error_ = std::current_exception();
-    }
-    blocks_.Close();
-  }
-
-  TextSource source_;
-  BoundedQueue<TextBlock> blocks_{kTextBlocksAhead};
-  std::exception_ptr error_;  ///< written before the queue is closed, read after
-  std::thread thread_;
 };
 
 /// Passes on what is ready; false when nobody wants it any more.
@@ -236,10 +190,18 @@ bool HandOver(LineReader* lines, double progress, const ReadAhead::Sink& sink) {
   return true;
 }
 
+/// What the passes to the end found, handed from their threads to the plan.
+struct WholeLog {
+  std::mutex mutex;
+  UnpaddedStamps stamps;
+  LogStatistics statistics;
+};
+
 void ReadCarmenLog(const std::string& path, const LogOptions& options,
-                   const ScanCalibration& calibration, const ReadAhead::Sink& sink) {
+                   const ScanCalibration& calibration, bool is_unpadded, WholeLog* whole,
+                   const ReadAhead::Sink& sink) {
   TextAhead text(path);
-  LineReader lines(options, calibration);
+  LineReader lines(options, calibration, is_unpadded);
   LineSplitter splitter;
   bool last_line_good = true;
   const auto on_line = [&](const char* begin, const char* end, bool too_long) {
@@ -255,6 +217,9 @@ void ReadCarmenLog(const std::string& path, const LogOptions& options,
     }
     if (!HandOver(&lines, block->progress, sink)) return;
   }
+  const std::lock_guard<std::mutex> lock(whole->mutex);
+  whole->stamps = lines.unpadded_stamps();
+  whole->statistics = lines.Statistics();
 }
 
 class CarmenPlan final : public LogPlan {
@@ -266,15 +231,33 @@ class CarmenPlan final : public LogPlan {
     LogStatistics statistics;
     statistics.max_range = calibration_.max_range();
     return std::make_unique<ReadAhead>(
-        statistics,
-        [path = path_, options = options_, calibration = calibration_](
-            const ReadAhead::Sink& sink) { ReadCarmenLog(path, options, calibration, sink); });
+        statistics, [path = path_, options = options_, calibration = calibration_,
+                     is_unpadded = is_unpadded_, whole = whole_](const ReadAhead::Sink& sink) {
+          ReadCarmenLog(path, options, calibration, is_unpadded, whole.get(), sink);
+        });
+  }
+
+  bool Reconsider() override {
+    const std::lock_guard<std::mutex> lock(whole_->mutex);
+    if (is_unpadded_ || !whole_->stamps.IsFound()) return false;
+    is_unpadded_ = true;
+    return true;
+  }
+
+  std::vector<SensorFinding> Findings() const override {
+    if (!is_unpadded_) return {};
+    const std::lock_guard<std::mutex> lock(whole_->mutex);
+    return {{"stamps with microseconds that lack the zeros in front",
+             static_cast<double>(whole_->stamps.mended()), 0.0, whole_->statistics.first_stamp,
+             whole_->statistics.last_stamp, "they are read as they are meant"}};
   }
 
  private:
   std::string path_;
   LogOptions options_;
   ScanCalibration calibration_;
+  std::shared_ptr<WholeLog> whole_ = std::make_shared<WholeLog>();
+  bool is_unpadded_ = false;
 };
 
 }  // namespace
