@@ -47,7 +47,7 @@ TEST(SummariseTest, SaysWhatAPersonCanCount) {
   EXPECT_NEAR(summary.scan_rate_hz, 5.0, 0.01);
   EXPECT_NEAR(summary.largest_gap_s, 3.2, 1e-6);
   EXPECT_NEAR(summary.largest_gap_stamp, 20.0, 1e-6);
-  EXPECT_EQ(summary.stamps_out_of_order, 0U);
+  EXPECT_EQ(summary.statistics.stamp_jumps, 0U);
 }
 
 TEST(SummariseTest, AnEmptyLogIsAllZeros) {

@@ -38,9 +38,8 @@ struct LogSummary {
   double odometry_rate_hz = 0.0;
   double pressure_rate_hz = 0.0;
   double acceleration_rate_hz = 0.0;
-  double largest_gap_s = 0.0;             ///< between scans
-  double largest_gap_stamp = 0.0;         ///< s, the stamp of the scan before it
-  std::uint64_t stamps_out_of_order = 0;  ///< late messages and mended stamps
+  double largest_gap_s = 0.0;      ///< between scans
+  double largest_gap_stamp = 0.0;  ///< s, the stamp of the scan before it
 };
 
 /// Reads the log from end to end; once more when all of it says otherwise than its beginning.
