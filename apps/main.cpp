@@ -3,9 +3,11 @@
 // exit code (0 done, 1 the work failed, 2 the input is at fault).
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -118,6 +120,12 @@ int main(int argc, char** argv) {
     return masked_mapper::Main(argc, argv);
   } catch (const masked_mapper::InputError& error) {
     return Fail(masked_mapper::kInputAtFault, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A name that no file can have is the user's; all else may be well with another disk.
+    const bool is_users = error.code() == std::errc::filename_too_long ||
+                          error.code() == std::errc::too_many_symbolic_link_levels;
+    return Fail(is_users ? masked_mapper::kInputAtFault : masked_mapper::kWorkFailed,
+                error.path1().string() + ": " + error.code().message());
   } catch (const std::bad_alloc&) {
     return Fail(masked_mapper::kWorkFailed, "out of memory");
   } catch (const std::exception& error) {

@@ -87,6 +87,8 @@ TEST(MapCommand, LogsThatAreNone) {
   for (const auto& [name, said] : WriteLogsThatAreNone(folder)) {
     ExpectUsersFault(folder, {"map", folder / name, "-o", folder / "out"}, said);
   }
+  const std::string endless(300, 'a');
+  ExpectUsersFault(folder, {"map", folder / endless, "-o", folder / "out"}, "File name too long");
 }
 
 TEST(MapCommand, LogsWithoutOneValidScanAreTheUsersFault) {
