@@ -3,6 +3,7 @@
 #include "fuzz/input_file.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
+#include "masked_mapper/log/ros_point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {
@@ -46,6 +47,9 @@ void RosMessages(const std::uint8_t* data, std::size_t size) {
     ParseHeader(data, size, encoding);
     ParseLaserScan(data, size, encoding);
     ParseMultiEchoLaserScan(data, size, EchoChoice::kStrongest, encoding);
+    if (!ParsePointCloud(data, size, encoding) && FaultOfPointCloud(data, size, encoding).empty()) {
+      std::abort();
+    }
     ParseOdometry(data, size, encoding);
     ParseTransforms(data, size, encoding);
     ParseImu(data, size, encoding);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -15,6 +16,9 @@ constexpr std::size_t kScansForLimit = 300;
 constexpr std::size_t kScansForClock = 50;
 constexpr std::size_t kMostFrames = 16;  // of one topic
 constexpr double kOutOfOrder = 5.0;      // s; what comes less late is put in order in passing
+constexpr double kNoLidar = 20.0;  // m; every lidar on a robot sees something nearer, if but once
+constexpr double kLeastReach = 10.0;     // m, of a 3D lidar that stands in a closet
+constexpr double kBeyondFarthest = 1.1;  // how far it sees at most, of what it saw at first
 constexpr double kTravels = 0.3;         // m, of a link that odometry moves
 
 /// Frames above odometry's: what moves in them is put right by a map, and jumps.
@@ -41,13 +45,20 @@ void BagEvidence::Note(std::size_t stream, double time, double header) {
   first_time_ = std::min(first_time_, time);
 }
 
-void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan) {
-  Note(stream, time, scan.header.stamp);
+ScannerEvidence* BagEvidence::NoteScanner(std::size_t stream, double time,
+                                          const RosHeader& header) {
+  Note(stream, time, header.stamp);
   ++scans_;
-  auto& frames = scanners_[topics_.topics[stream].scanner];
-  if (frames.size() < kMostFrames || frames.count(scan.header.frame_id) > 0) {
-    frames[scan.header.frame_id].Add(scan, options_.min_range);
-    scan_clocks_[topics_.topics[stream].scanner][scan.header.frame_id].Add(scan.header.stamp, time);
+  const std::size_t scanner = topics_.topics[stream].scanner;
+  auto& frames = scanners_[scanner];
+  if (frames.size() >= kMostFrames && frames.count(header.frame_id) == 0) return nullptr;
+  scan_clocks_[scanner][header.frame_id].Add(header.stamp, time);
+  return &frames[header.frame_id];
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan) {
+  if (ScannerEvidence* const frame = NoteScanner(stream, time, scan.header)) {
+    frame->Add(scan, options_.min_range);
   }
   if (IsRangeLimit(scan.range_max)) {
     max_range_ = std::max(max_range_, scan.range_max);
@@ -55,6 +66,20 @@ void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan)
     limit_is_stated_ = false;
   }
   if (!limit_is_stated_) ranges_.Add(scan.ranges, scan.angle_increment, {});
+}
+
+void BagEvidence::Add(std::size_t stream, double time, const RosPointCloud& cloud) {
+  double farthest = kLeastReach;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const CloudPoint& point : cloud.points) {
+    const double range = point.position.norm();
+    farthest = std::max(farthest, range);
+    nearest = std::min(nearest, range);
+  }
+  if (ScannerEvidence* const frame = NoteScanner(stream, time, cloud.header)) {
+    frame->AddCloud(cloud.points.size(), nearest);
+  }
+  max_range_ = std::max(max_range_, kBeyondFarthest * farthest);
 }
 
 void BagEvidence::Add(std::size_t stream, double time, const RosOdometry& odometry) {
@@ -177,13 +202,26 @@ BagPlan BagEvidence::Conclude() const {
 void BagEvidence::SetMounts(BagPlan* plan) const {
   for (std::size_t scanner = 0; scanner < plan->scanners; ++scanner) {
     const auto T_robot_laser = frames_.Find(plan->robot_frame, FrameOf(scanner));
-    if (T_robot_laser) plan->mounts[scanner] = SeenFromAbove(*T_robot_laser);
+    if (!T_robot_laser) continue;
+    plan->mounts[scanner] = SeenFromAbove(*T_robot_laser);
+    plan->T_robot_lidar[scanner] = *T_robot_laser;
   }
   const bool given =
       options_.laser_x != 0.0 || options_.laser_y != 0.0 || options_.laser_theta_deg != 0.0;
   if (given && plan->scanners == 1) {
     plan->mounts[0].T_robot_laser = {options_.laser_x, options_.laser_y,
                                      WrapAngle(DegToRad(options_.laser_theta_deg))};
+    Eigen::Isometry3d& T_robot_lidar = plan->T_robot_lidar[0];
+    const double turn =
+        plan->mounts[0].T_robot_laser.theta - SeenFromAbove(T_robot_lidar).T_robot_laser.theta;
+    T_robot_lidar.linear() =
+        Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * T_robot_lidar.linear();
+    T_robot_lidar.translation().head<2>() = plan->mounts[0].T_robot_laser.Translation();
+  }
+  if (options_.upside_down) {
+    for (Eigen::Isometry3d& T_robot_lidar : plan->T_robot_lidar) {
+      T_robot_lidar.rotate(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
+    }
   }
   if (const auto T_robot_imu = frames_.Find(plan->robot_frame, imu_frame_)) {
     plan->R_robot_imu = T_robot_imu->linear();
@@ -251,6 +289,11 @@ std::vector<SensorFinding> BagEvidence::Findings(const BagPlan& plan) const {
       add("scans of other frames on " + name, left_out,
           "those of `" + plan.topics[scanner].frame + "` are taken, those of " + others +
               " left out");
+    }
+    if (evidence.nearest_of_clouds() > kNoLidar && std::isfinite(evidence.nearest_of_clouds())) {
+      add("nearest return of all on " + name + ", m", evidence.nearest_of_clouds(),
+          "these clouds are not told from where the lidar is, and scans cut from them are wrong: "
+          "read the topic of its driver");
     }
     if (plan.ranges[scanner].scale != 1.0) {
       add("unit of the ranges of " + name + ", m", plan.ranges[scanner].scale,

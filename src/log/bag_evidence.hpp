@@ -24,6 +24,7 @@ class BagEvidence {
 
   /// The messages of a stream, in the order of the file; `time` is that of recording.
   void Add(std::size_t stream, double time, const RosLaserScan& scan);
+  void Add(std::size_t stream, double time, const RosPointCloud& cloud);
   void Add(std::size_t stream, double time, const RosOdometry& odometry);
   void Add(std::size_t stream, double time, const std::vector<RosTransform>& transforms);
   void Add(std::size_t stream, double time, const RosImu& imu);
@@ -39,6 +40,8 @@ class BagEvidence {
   std::vector<SensorFinding> Findings(const BagPlan& plan) const;
 
  private:
+  /// Empty: too many frames on one topic.
+  ScannerEvidence* NoteScanner(std::size_t stream, double time, const RosHeader& header);
   void Note(std::size_t stream, double time, double header);
   /// The frame of a scanner; of several, the one with the most scans that see anything.
   std::string FrameOf(std::size_t scanner) const;

@@ -22,6 +22,7 @@ BagPlan LookAtBag(const std::string& path, const LogOptions& options, const BagP
   std::optional<double> begin;
   bool has_scans = false;
   std::uint64_t malformed_scans = 0;
+  std::string fault;
   while (const std::optional<BagMessage> message = bag->Next()) {
     if (!begin) begin = message->time;
     const std::optional<std::size_t> stream = streams.Find(message->connection);
@@ -29,9 +30,14 @@ BagPlan LookAtBag(const std::string& path, const LogOptions& options, const BagP
     const auto parsed = ParseMessage(topics.topics[*stream].kind, *message, options);
     if (!parsed) {
       malformed_scans += *stream < topics.scanners ? 1 : 0;
+      if (fault.empty() && topics.topics[*stream].kind == TopicKind::kCloud) {
+        fault = ", the first on " + topics.topics[*stream].name + " is a " +
+                FaultOf(topics.topics[*stream].kind, *message);
+      }
       continue;
     }
-    has_scans = has_scans || std::holds_alternative<RosLaserScan>(*parsed);
+    has_scans = has_scans || std::holds_alternative<RosLaserScan>(*parsed) ||
+                std::holds_alternative<RosPointCloud>(*parsed);
     std::visit([&](const auto& read) { evidence.Add(*stream, message->time, read); }, *parsed);
     const bool long_enough = message->time > *begin + kLongestLook;
     if (!evidence.SilentScanner() && (long_enough || evidence.IsEnough())) break;
@@ -40,7 +46,7 @@ BagPlan LookAtBag(const std::string& path, const LogOptions& options, const BagP
     throw InputError(
         path + ": holds no scan that can be read" +
         (malformed_scans > 0 ? ": all " + std::to_string(malformed_scans) + " are malformed" : "") +
-        DamageOf(*bag));
+        fault + DamageOf(*bag));
   }
   if (const std::optional<std::size_t> silent = evidence.SilentScanner()) {
     throw InputError(path + ": log.scan_topic: `" + topics.topics[*silent].name +

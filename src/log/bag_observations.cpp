@@ -21,6 +21,9 @@ BagObservations::BagObservations(const LogOptions& options, const BagPlan& plan,
       streams_(plan, bag),
       in_order_(plan.scanners) {
   statistics_.max_range = plan.max_range;
+  for (const Eigen::Isometry3d& T_robot_lidar : plan.T_robot_lidar) {
+    lidars_.emplace_back(options, T_robot_lidar, static_cast<float>(plan.max_range));
+  }
 }
 
 void BagObservations::Add(const BagMessage& message) {
@@ -32,7 +35,8 @@ void BagObservations::Add(const BagMessage& message) {
   } else if (!Take(*stream, message)) {
     if (statistics_.bad_lines++ == 0) {
       statistics_.first_bad_line = "message " + std::to_string(statistics_.lines) + " on " +
-                                   plan_.topics[*stream].name + ": malformed";
+                                   plan_.topics[*stream].name + ": " +
+                                   FaultOf(plan_.topics[*stream].kind, message);
     }
   }
 }
@@ -91,26 +95,41 @@ bool BagObservations::Take(std::size_t stream, const BagMessage& message) {
   return true;
 }
 
-void BagObservations::TakeMessage(std::size_t stream, double time, RosLaserScan& scan) {
+bool BagObservations::IsOfFrame(std::size_t stream, const RosHeader& header) {
   const BagTopic& topic = plan_.topics[stream];
-  if (!topic.frame.empty() && scan.header.frame_id != topic.frame) {
-    CountOther(topic.name + " (of `" + scan.header.frame_id + "`)");
-    return;
-  }
+  if (topic.frame.empty() || header.frame_id == topic.frame) return true;
+  CountOther(topic.name + " (of `" + header.frame_id + "`)");
+  return false;
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time, RosLaserScan& scan) {
+  if (!IsOfFrame(stream, scan.header)) return;
   const double stamp = StampOf(stream, time, scan.header.stamp);
-  mender_.Add(Convert(std::move(scan), stamp, topic.scanner), stream);
+  mender_.Add(Convert(std::move(scan), stamp, plan_.topics[stream].scanner), stream);
+}
+
+void BagObservations::TakeMessage(std::size_t stream, double time, RosPointCloud& cloud) {
+  if (!IsOfFrame(stream, cloud.header)) return;
+  const double stamp = StampOf(stream, time, cloud.header.stamp);
+  CloudScanner& lidar = lidars_[plan_.topics[stream].scanner];
+  mender_.Add(lidar.Cut(std::move(cloud), stamp, motion_), stream);
+}
+
+void BagObservations::AddOdometry(std::size_t stream, const OdometryReading& reading) {
+  motion_.Add(reading);
+  mender_.Add(reading, stream);
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time, const RosOdometry& odometry) {
-  mender_.Add(OdometryReading{StampOf(stream, time, odometry.header.stamp),
-                              SeenFromAbove(odometry.T_frame_child).T_robot_laser},
-              stream);
+  AddOdometry(stream, {StampOf(stream, time, odometry.header.stamp),
+                       SeenFromAbove(odometry.T_frame_child).T_robot_laser});
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time, const RosImu& imu) {
-  mender_.Add(AccelerationReading{StampOf(stream, time, imu.header.stamp),
-                                  plan_.R_robot_imu * imu.acceleration},
-              stream);
+  const AccelerationReading reading{StampOf(stream, time, imu.header.stamp),
+                                    plan_.R_robot_imu * imu.acceleration};
+  motion_.Add(reading);
+  mender_.Add(reading, stream);
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time,
@@ -127,9 +146,8 @@ void BagObservations::TakeMessage(std::size_t stream, double time,
         transform.child_frame_id != plan_.robot_frame) {
       continue;
     }
-    mender_.Add(OdometryReading{StampOf(stream, time, transform.header.stamp),
-                                SeenFromAbove(transform.T_frame_child).T_robot_laser},
-                stream);
+    AddOdometry(stream, {StampOf(stream, time, transform.header.stamp),
+                         SeenFromAbove(transform.T_frame_child).T_robot_laser});
   }
 }
 

@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bag_evidence.hpp"
 #include "bag_plan.hpp"
+#include "cloud_scanner.hpp"
 #include "masked_mapper/log/odometry_at_scans.hpp"
 #include "masked_mapper/log/scan_merger.hpp"
 #include "masked_mapper/log/stamp_mender.hpp"
@@ -69,10 +72,14 @@ class BagObservations {
   /// False when the message is malformed.
   bool Take(std::size_t stream, const BagMessage& message);
   void TakeMessage(std::size_t stream, double time, RosLaserScan& scan);
+  void TakeMessage(std::size_t stream, double time, RosPointCloud& cloud);
   void TakeMessage(std::size_t stream, double time, const RosOdometry& odometry);
   void TakeMessage(std::size_t stream, double time, const std::vector<RosTransform>& transforms);
   void TakeMessage(std::size_t stream, double time, const RosImu& imu);
   void TakeMessage(std::size_t stream, double time, const RosFluidPressure& pressure);
+  /// Whether the message is of the frame that is read of its topic; counted when not.
+  bool IsOfFrame(std::size_t stream, const RosHeader& header);
+  void AddOdometry(std::size_t stream, const OdometryReading& reading);
   LaserScan Convert(RosLaserScan ros_scan, double stamp, std::size_t scanner);
   void Count(const Observation& observation);
   void CountOther(const std::string& name);
@@ -82,6 +89,8 @@ class BagObservations {
   const RosBag& bag_;
   BagEvidence* evidence_;
   BagStreams streams_;
+  RobotMotion motion_;
+  std::vector<CloudScanner> lidars_;  ///< of the scanners
   StampMender mender_;
   OdometryAtScans at_scans_;
   InOrder in_order_;

@@ -49,8 +49,8 @@ class TopicChoice {
   /// Throws InputError with all that the user is to choose or to mend, so that it is told once.
   BagPlan Choose(const LogOptions& options) {
     BagPlan plan;
-    for (const std::string& name : Pick({TopicKind::kScan, TopicKind::kMultiEcho}, "scan",
-                                        "log.scan_topic", options.scan_topic)) {
+    for (const std::string& name :
+         Pick(Scanners(options), "scan", "log.scan_topic", options.scan_topic)) {
       plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
     if (plan.scanners == 0 && problems_.empty()) return plan;
@@ -65,12 +65,24 @@ class TopicChoice {
     plan.mounts.resize(plan.scanners);
     plan.clocks.resize(plan.topics.size());
     plan.ranges.resize(plan.scanners);
+    plan.T_robot_lidar.assign(plan.scanners, Eigen::Isometry3d::Identity());
     return plan;
   }
 
  private:
   void AddProblem(const std::string& problem) {
     problems_ += (problems_.empty() ? "" : "; ") + problem;
+  }
+
+  /// Who records scans besides clouds maps by the scans; clouds stand in where they are named, or
+  /// alone.
+  std::set<TopicKind> Scanners(const LogOptions& options) const {
+    const std::set<TopicKind> flat = {TopicKind::kScan, TopicKind::kMultiEcho};
+    const bool has_flat = std::any_of(kinds_.begin(), kinds_.end(), [&flat](const auto& topic) {
+      return flat.count(topic.second) > 0;
+    });
+    if (has_flat && options.scan_topic.empty()) return flat;
+    return {TopicKind::kScan, TopicKind::kMultiEcho, TopicKind::kCloud};
   }
 
   std::vector<std::string> Pick(const std::set<TopicKind>& wanted, const std::string& what,
@@ -154,6 +166,9 @@ bool ReadsOtherwise(const BagPlan& one, const BagPlan& other) {
     return a.upside_down == b.upside_down &&
            (a.T_robot_laser.AsVector() - b.T_robot_laser.AsVector()).norm() < kSameMount;
   };
+  const auto same_lidar = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return (a.matrix() - b.matrix()).norm() < kSameMount;
+  };
   const auto same_ranges = [](const ScannerRanges& a, const ScannerRanges& b) {
     return a.scale == b.scale && a.believes_range_min == b.believes_range_min;
   };
@@ -162,6 +177,7 @@ bool ReadsOtherwise(const BagPlan& one, const BagPlan& other) {
   };
   return !all(one.topics, other.topics, same_topic) || !all(one.clocks, other.clocks, same_clock) ||
          !all(one.mounts, other.mounts, same_mount) ||
+         !all(one.T_robot_lidar, other.T_robot_lidar, same_lidar) ||
          !all(one.ranges, other.ranges, same_ranges) || one.is_disordered != other.is_disordered ||
          one.odometry_frame != other.odometry_frame || one.robot_frame != other.robot_frame ||
          (one.R_robot_imu - other.R_robot_imu).norm() > kSameMount;
@@ -180,6 +196,8 @@ std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message
       return as_message(ParseLaserScan(data, message.size, message.encoding));
     case TopicKind::kMultiEcho:
       return as_message(ParseMultiEchoLaserScan(data, message.size, echo, message.encoding));
+    case TopicKind::kCloud:
+      return as_message(ParsePointCloud(data, message.size, message.encoding));
     case TopicKind::kOdometry:
       return as_message(ParseOdometry(data, message.size, message.encoding));
     case TopicKind::kTransforms:
@@ -190,6 +208,11 @@ std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message
       return as_message(ParseFluidPressure(data, message.size, message.encoding));
   }
   return std::nullopt;
+}
+
+std::string FaultOf(TopicKind kind, const BagMessage& message) {
+  if (kind != TopicKind::kCloud) return "malformed";
+  return "PointCloud2 that " + FaultOfPointCloud(message.data, message.size, message.encoding);
 }
 
 bool IsRangeLimit(double range_max) {

@@ -17,6 +17,7 @@
 #include "masked_mapper/log/frame_tree.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
+#include "masked_mapper/log/ros_point_cloud.hpp"
 #include "ros_types.hpp"
 #include "scanner_evidence.hpp"
 
@@ -34,8 +35,9 @@ struct BagPlan {
   std::vector<BagTopic> topics;  ///< those of the scanners first, in their order
   std::size_t scanners = 0;
   bool has_odometry_topic = false;
-  std::vector<PlanarMount> mounts;  ///< of the scanners
-  std::string odometry_frame;       ///< of tf, when there is no Odometry; empty: none
+  std::vector<PlanarMount> mounts;               ///< of the scanners
+  std::vector<Eigen::Isometry3d> T_robot_lidar;  ///< of the scanners, those of clouds
+  std::string odometry_frame;                    ///< of tf, when there is no Odometry; empty: none
   std::string robot_frame;
   Eigen::Matrix3d R_robot_imu = Eigen::Matrix3d::Identity();
   std::vector<TopicClock> clocks;     ///< of the topics
@@ -72,12 +74,14 @@ class BagStreams {
 /// are was settled by the beginning, and is no matter.
 bool ReadsOtherwise(const BagPlan& one, const BagPlan& other);
 
-using RosMessage =
-    std::variant<RosLaserScan, RosOdometry, std::vector<RosTransform>, RosImu, RosFluidPressure>;
+using RosMessage = std::variant<RosLaserScan, RosPointCloud, RosOdometry, std::vector<RosTransform>,
+                                RosImu, RosFluidPressure>;
 
 /// Empty when the message is malformed.
 std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message,
                                        const LogOptions& options);
+/// What is wrong with a message of which ParseMessage made nothing.
+std::string FaultOf(TopicKind kind, const BagMessage& message);
 
 /// Whether a scan's range_max says anything.
 bool IsRangeLimit(double range_max);

@@ -85,7 +85,7 @@ std::string WhatIsThereInsteadOfScans(RosBag* bag) {
   if (topics.size() > kMostListed) {
     list += ", and " + std::to_string(topics.size() - kMostListed) + " more topics";
   }
-  return "holds no sensor_msgs/LaserScan (topics: " + (list.empty() ? "none" : list) + ")" +
+  return "holds no sensor_msgs/LaserScan and no PointCloud2 (topics: " + (list.empty() ? "none" : list) + ")" +
          RemedyFor(bag->Connections()) + DamageOf(*bag);
 }
 

@@ -29,6 +29,11 @@ inline std::string FrameId(std::string frame) {
   return frame.empty() || frame.front() != '/' ? frame : frame.substr(1);
 }
 
+struct ByteView {
+  const unsigned char* data = nullptr;
+  std::size_t size = 0;
+};
+
 /// ROS 1: little-endian, arrays and strings with their length before them.
 class Ros1Fields {
  public:
@@ -72,6 +77,13 @@ class Ros1Fields {
     return values;
   }
 
+  /// Valid as long as the message is.
+  ByteView Bytes() {
+    const std::size_t count = Count(1);
+    const unsigned char* bytes = Take(count);
+    return bytes == nullptr ? ByteView{} : ByteView{bytes, count};
+  }
+
   RosHeader Header() {
     RosHeader header;
     Number<std::uint32_t>();  // seq
@@ -104,7 +116,8 @@ class Ros1Fields {
 class CdrFields {
  public:
   CdrFields(const unsigned char* data, std::size_t size)
-      : size_(size),
+      : data_(data),
+        size_(size),
         // Read only, but the library knows no such buffer.
         buffer_(const_cast<char*>(reinterpret_cast<const char*>(data)), size),
         cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
@@ -140,6 +153,15 @@ class CdrFields {
 
   std::vector<float> Floats() { return Array<std::vector<float>>(Count(sizeof(float)), 0.0F); }
 
+  ByteView Bytes() {
+    const std::size_t count = Count(1);
+    const ByteView bytes{data_ + cdr_.getSerializedDataLength(), count};
+    Try([this, count] {
+      if (!cdr_.jump(count)) good_ = false;
+    });
+    return good_ ? bytes : ByteView{};
+  }
+
   RosHeader Header() {
     RosHeader header;
     const auto seconds = Number<std::int32_t>();
@@ -167,6 +189,7 @@ class CdrFields {
     return good_ ? values : Values{};
   }
 
+  const unsigned char* data_;
   std::size_t size_;
   eprosima::fastcdr::FastBuffer buffer_;
   eprosima::fastcdr::Cdr cdr_;
@@ -186,6 +209,8 @@ class Ros1Output {
     AppendNumber(value, &bytes_);
   }
   void String(const std::string& text) { AppendString(text, &bytes_); }
+  /// Without their count.
+  void Bytes(const std::string& bytes) { bytes_ += bytes; }
   void Header(const RosHeader& header) {
     Number(std::uint32_t{0});  // seq
     const std::uint64_t time = NanosecondsOf(header.stamp);
@@ -212,6 +237,7 @@ class CdrOutput {
     Number(static_cast<std::uint32_t>(text.size() + 1));
     bytes_.append(text.c_str(), text.size() + 1);
   }
+  void Bytes(const std::string& bytes) { bytes_ += bytes; }
   void Header(const RosHeader& header) {
     const std::uint64_t time = NanosecondsOf(header.stamp);
     Number(static_cast<std::int32_t>(time / kNanoseconds));

@@ -13,6 +13,7 @@ constexpr RosType kTypes[] = {
     {"sensor_msgs", "LaserScan", "90c7ef2dc6895d81024acba2ac42f369", TopicKind::kScan},
     {"sensor_msgs", "MultiEchoLaserScan", "6fefb0c6da89d7c8abe4b339f5c2f8fb",
      TopicKind::kMultiEcho},
+    {"sensor_msgs", "PointCloud2", "1158d486dd51d683ce2f1be655c3c181", TopicKind::kCloud},
     {"nav_msgs", "Odometry", "cd5e73d190d741a2f92e81eda573aca7", TopicKind::kOdometry},
     {"tf2_msgs", "TFMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
     {"tf", "tfMessage", "94810edda583a504dfda3829e70d7eec", TopicKind::kTransforms},
@@ -27,6 +28,13 @@ const std::map<std::string, std::string>& Fields() {
        "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
        "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
        "float32[] ranges\nfloat32[] intensities\n"},
+      {"sensor_msgs/PointCloud2",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
+       "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
+      {"sensor_msgs/PointField",
+       "uint8 INT8    = 1\nuint8 UINT8   = 2\nuint8 INT16   = 3\nuint8 UINT16  = 4\n"
+       "uint8 INT32   = 5\nuint8 UINT32  = 6\nuint8 FLOAT32 = 7\nuint8 FLOAT64 = 8\n"
+       "string name\nuint32 offset\nuint8  datatype\nuint32 count\n"},
       {"nav_msgs/Odometry",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
        "geometry_msgs/TwistWithCovariance twist\n"},

@@ -9,7 +9,7 @@
 
 namespace masked_mapper {
 
-enum class TopicKind { kScan, kMultiEcho, kOdometry, kTransforms, kImu, kPressure };
+enum class TopicKind { kScan, kMultiEcho, kCloud, kOdometry, kTransforms, kImu, kPressure };
 
 struct RosType {
   const char* package;

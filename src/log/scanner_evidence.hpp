@@ -3,8 +3,11 @@
 // are published that give millimetres for metres, or a least range beyond half of the room.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "masked_mapper/log/ros_messages.hpp"
@@ -22,6 +25,14 @@ class ScannerEvidence {
   /// `least_range`: m, below which nothing is believed anyway.
   void Add(const RosLaserScan& scan, double least_range);
 
+  /// Of a cloud nothing is known but that it has returns: its limits are nobody's claim.
+  void AddCloud(std::size_t returns, double nearest) {
+    ++scans_;
+    nearest_of_clouds_ = std::min(nearest_of_clouds_, nearest);
+    finite_ += returns;
+    within_ += returns;
+  }
+
   std::uint64_t scans() const { return scans_; }
   /// Whether any beam ever came back.
   bool HasReturns() const { return finite_ > 0; }
@@ -29,6 +40,8 @@ class ScannerEvidence {
   /// Share of the ranges that lie within the limits which their messages state.
   double ShareWithinLimits() const;
   double range_min() const { return range_min_; }
+  /// m, from the origin of the frame; infinite without a cloud.
+  double nearest_of_clouds() const { return nearest_of_clouds_; }
 
  private:
   double Median() const;
@@ -38,6 +51,7 @@ class ScannerEvidence {
   std::uint64_t within_ = 0;  ///< the limits of their message
   std::uint64_t near_ = 0;    ///< below range_min, and like their neighbour: a surface, no noise
   double range_min_ = 0.0;
+  double nearest_of_clouds_ = std::numeric_limits<double>::infinity();
   std::array<std::uint64_t, 96> histogram_{};  ///< of the logarithm
   std::vector<float> nearest_;                 ///< per beam, of what is counted in near_
   std::vector<float> farthest_;

@@ -131,7 +131,8 @@ TEST_F(OpenBagTest, WhatHoldsNoScanIsToldByItsTopicsAndWhatHelps) {
                             McapMessageBytes(1, 1.0, "abcd"))));
   };
   const std::string odometry = refusal("nav_msgs/msg/Odometry", "cdr");
-  EXPECT_NE(odometry.find("no sensor_msgs/LaserScan (topics: 1 on /topic (nav_msgs/msg/Odometry))"),
+  EXPECT_NE(odometry.find("no sensor_msgs/LaserScan and no PointCloud2 (topics: 1 on /topic "
+                          "(nav_msgs/msg/Odometry))"),
             std::string::npos)
       << odometry;
   EXPECT_NE(refusal("foxglove.LaserScan", "protobuf").find("serialised as protobuf"),

@@ -186,7 +186,8 @@ TEST(OpenRosBagTest, RefusesWithOneLine) {
   const TemporaryFile obsolete(".bag", "#ROSBAG V1.2\nxxxx");
   EXPECT_NE(Message(obsolete.path()).find("version 1.2"), std::string::npos);
   const TemporaryFile nothing(".bag", BagMagic() + BagHeaderRecord(0, 0, 0));
-  EXPECT_NE(Message(nothing.path()).find("holds no sensor_msgs/LaserScan (topics: none)"),
+  EXPECT_NE(Message(nothing.path())
+                .find("holds no sensor_msgs/LaserScan and no PointCloud2 (topics: none)"),
             std::string::npos);
   // The topic is announced, but silent.
   const TemporaryFile silent(".bag", BagMagic() + BagHeaderRecord(0, 0, 0) +

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cloud_scanner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "masked_mapper/sensor/virtual_scan.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kRemembered = 3.0;      // s
+constexpr double kSilent = 1.0;          // s without odometry: nobody knows how the robot went on
+constexpr double kGravitySettles = 2.0;  // s; a robot brakes in less
+
+}  // namespace
+
+void RobotMotion::Add(const OdometryReading& reading) {
+  // A clock that was set back begins anew.
+  if (!odometry_.empty() && reading.stamp < odometry_.back().first - kRemembered) odometry_.clear();
+  if (!odometry_.empty() && reading.stamp <= odometry_.back().first) return;
+  odometry_.emplace_back(reading.stamp, reading.T_odom_robot);
+  while (odometry_.size() > 2 && odometry_.front().first < reading.stamp - kRemembered) {
+    odometry_.pop_front();
+  }
+}
+
+void RobotMotion::Add(const AccelerationReading& reading) {
+  const Eigen::Vector3d& force = reading.acceleration_in_robot;
+  if (!(force.norm() > 1.0)) return;  // in free fall nothing is up
+  const double since = gravity_ ? reading.stamp - gravity_->first : kGravitySettles;
+  const double share = since > 0.0 ? std::min(1.0, since / kGravitySettles) : 0.0;
+  const Eigen::Vector3d before = gravity_ ? gravity_->second : force;
+  gravity_ = {{reading.stamp, before + share * (force - before)}};
+}
+
+Pose2 RobotMotion::At(double stamp) const {
+  const auto after = std::lower_bound(
+      odometry_.begin() + 1, odometry_.end() - 1, stamp,
+      [](const std::pair<double, Pose2>& reading, double t) { return reading.first < t; });
+  const auto before = after - 1;
+  return Interpolate(before->second, after->second,
+                     (stamp - before->first) / (after->first - before->first));
+}
+
+Pose2 RobotMotion::Between(double from, double to) const {
+  if (odometry_.size() < 2) return {};
+  const double begin = std::min(from, to);
+  const double end = std::max(from, to);
+  if (begin < odometry_.front().first - kSilent || end > odometry_.back().first + kSilent)
+    return {};
+  return masked_mapper::Between(At(from), At(to));
+}
+
+std::optional<Eigen::Vector3d> RobotMotion::Up() const {
+  if (!gravity_ || !(gravity_->second.norm() > 1.0)) return std::nullopt;
+  const Eigen::Vector3d up = gravity_->second.normalized();
+  // Of a robot that lies on its side, or an accelerometer whose mount nobody told.
+  constexpr double kUpright = 0.7;
+  if (up.z() < kUpright) return std::nullopt;
+  return up;
+}
+
+CloudScanner::CloudScanner(const LogOptions& options, const Eigen::Isometry3d& T_robot_lidar,
+                           float max_range)
+    : options_(options), T_robot_lidar_(T_robot_lidar), max_range_(max_range) {}
+
+LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion) {
+  CloudPoints& points = cloud.points;
+  const auto too_near = [this](const CloudPoint& point) {
+    return !(point.position.norm() >= static_cast<float>(options_.min_range));
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), too_near), points.end());
+  Move(T_robot_lidar_, &points);
+  if (cloud.has_times) {
+    Straighten([&](double after) { return motion.Between(stamp, stamp + after); }, &points);
+  }
+  const Eigen::Vector3d lidar = T_robot_lidar_.translation();
+  const Ground ground = ground_.Find(points, lidar, motion.Up());
+  const Eigen::Isometry3d T_level_robot = ground.T_level_robot();
+  Move(T_level_robot, &points);
+  const Eigen::Vector3d lidar_in_level = T_level_robot * lidar;
+  const WallBand band = BandBetween(ground, lidar_in_level.z(), {});
+  LaserScan scan = CutToScan(points, lidar_in_level, band, max_range_);
+  scan.stamp = stamp;
+  scan.log_stamp = cloud.header.stamp > 0.0 ? cloud.header.stamp : stamp;
+  if (!options_.read_ranges) scan.ranges.clear();
+  return scan;
+}
+
+}  // namespace masked_mapper

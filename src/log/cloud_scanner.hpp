@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds of one 3D lidar in, virtual 2D scans out: each cloud is straightened along the motion that
+// the wheels tell, levelled and cut (sensor/virtual_scan.hpp).
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/ros_point_cloud.hpp"
+#include "masked_mapper/sensor/ground.hpp"
+
+namespace masked_mapper {
+
+/// What the log told of the robot up to now, in the order of the log.
+class RobotMotion {
+ public:
+  void Add(const OdometryReading& reading);
+  void Add(const AccelerationReading& reading);
+
+  /// T_robot(from)_robot(to), s; beyond the last readings the robot goes on as it went. Where the
+  /// log tells no motion it stands.
+  Pose2 Between(double from, double to) const;
+  /// Where up is in the robot frame; empty without an accelerometer.
+  std::optional<Eigen::Vector3d> Up() const;
+
+ private:
+  Pose2 At(double stamp) const;
+
+  std::deque<std::pair<double, Pose2>> odometry_;  ///< of the last seconds, by stamps
+  std::optional<std::pair<double, Eigen::Vector3d>> gravity_;
+};
+
+class CloudScanner {
+ public:
+  CloudScanner(const LogOptions& options, const Eigen::Isometry3d& T_robot_lidar, float max_range);
+
+  /// `stamp` is that of the cloud in the clock of the log.
+  LaserScan Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion);
+
+ private:
+  const LogOptions& options_;
+  Eigen::Isometry3d T_robot_lidar_;
+  float max_range_;
+  GroundFinder ground_;
+};
+
+}  // namespace masked_mapper

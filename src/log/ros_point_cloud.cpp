@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/log/ros_point_cloud.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "ros_fields.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::size_t kMostFields = 256;
+constexpr std::uint64_t kMostPoints = 10000000;
+constexpr float kFarthest = 10000.0F;  // m; what is said to lie beyond is no return
+
+// sensor_msgs/PointField
+constexpr std::array<std::size_t, 9> kSizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+
+struct Field {
+  std::string name;
+  std::uint64_t offset = 0;
+  std::uint8_t type = 0;
+  std::uint32_t count = 0;
+
+  std::size_t size() const { return type < kSizes.size() ? kSizes[type] : 0; }
+};
+
+struct CloudMessage {
+  RosHeader header;
+  std::uint64_t height = 0;
+  std::uint64_t width = 0;
+  std::vector<Field> fields;
+  bool is_bigendian = false;
+  std::uint64_t point_step = 0;
+  std::uint64_t row_step = 0;
+  ByteView data;
+  bool is_complete = false;
+
+  const Field* Find(const std::set<std::string>& names) const {
+    const auto field = std::find_if(fields.begin(), fields.end(),
+                                    [&names](const Field& f) { return names.count(f.name) > 0; });
+    return field == fields.end() ? nullptr : &*field;
+  }
+};
+
+template <typename Fields>
+CloudMessage ReadMessage(Fields* fields) {
+  CloudMessage message;
+  message.header = fields->Header();
+  message.height = fields->template Number<std::uint32_t>();
+  message.width = fields->template Number<std::uint32_t>();
+  constexpr std::size_t kLeastField = 4 + 4 + 1 + 4;  // without a name
+  const std::size_t count = fields->Count(kLeastField);
+  if (count > kMostFields) return message;
+  for (std::size_t i = 0; i < count; ++i) {
+    Field field;
+    field.name = fields->String();
+    field.offset = fields->template Number<std::uint32_t>();
+    field.type = fields->template Number<std::uint8_t>();
+    field.count = fields->template Number<std::uint32_t>();
+    message.fields.push_back(std::move(field));
+  }
+  message.is_bigendian = fields->template Number<std::uint8_t>() != 0;
+  message.point_step = fields->template Number<std::uint32_t>();
+  message.row_step = fields->template Number<std::uint32_t>();
+  message.data = fields->Bytes();
+  fields->template Number<std::uint8_t>();  // is_dense: each point is looked at all the same
+  message.is_complete = fields->good();
+  // Of one row nobody needs the step, and some leave it out.
+  if (message.height == 1) message.row_step = message.width * message.point_step;
+  return message;
+}
+
+CloudMessage ReadMessage(const unsigned char* data, std::size_t size, MessageEncoding encoding) {
+  if (encoding == MessageEncoding::kCdr) {
+    CdrFields fields(data, size);
+    return ReadMessage(&fields);
+  }
+  Ros1Fields fields(data, size);
+  return ReadMessage(&fields);
+}
+
+/// Empty: all that is read of the message is inside it.
+std::string FaultOf(const CloudMessage& cloud) {
+  const auto text = [](std::uint64_t number) { return std::to_string(number); };
+  if (!cloud.is_complete) return "is cut off, or says that it is longer than it is";
+  // Both are less than 2^32: neither this product nor the next overflows.
+  if (cloud.width * cloud.height > kMostPoints) {
+    return "has " + text(cloud.height) + " x " + text(cloud.width) + " points, more than " +
+           text(kMostPoints);
+  }
+  for (const char* axis : {"x", "y", "z"}) {
+    const Field* field = cloud.Find({axis});
+    if (field == nullptr) return std::string("has no field `") + axis + "`";
+    if (field->size() == 0) {
+      return std::string("has the field `") + axis + "` of type " + text(field->type) +
+             ", expected 1 to 8";
+    }
+  }
+  for (const Field& field : cloud.fields) {
+    if (field.offset + field.size() <= cloud.point_step) continue;
+    return "has the field `" + field.name + "` at byte " + text(field.offset) + " of points of " +
+           text(cloud.point_step) + " bytes";
+  }
+  if (cloud.width * cloud.height == 0) return "";
+  if (cloud.row_step < cloud.width * cloud.point_step) {
+    return "has rows of " + text(cloud.row_step) + " bytes for " + text(cloud.width) +
+           " points of " + text(cloud.point_step);
+  }
+  const std::uint64_t needed = (cloud.height - 1) * cloud.row_step + cloud.width * cloud.point_step;
+  if (needed > cloud.data.size) {
+    return "holds " + text(cloud.data.size) + " bytes of points where " + text(needed) +
+           " were expected";
+  }
+  return "";
+}
+
+/// Numbers of one field, whatever their type.
+class FieldReader {
+ public:
+  FieldReader(const Field& field, bool is_bigendian)
+      : offset_(field.offset), type_(field.type), swapped_(is_bigendian) {}
+
+  double At(const unsigned char* point) const {
+    const unsigned char* bytes = point + offset_;
+    switch (type_) {
+      case 1:
+        return Number<std::int8_t>(bytes);
+      case 2:
+        return Number<std::uint8_t>(bytes);
+      case 3:
+        return Number<std::int16_t>(bytes);
+      case 4:
+        return Number<std::uint16_t>(bytes);
+      case 5:
+        return Number<std::int32_t>(bytes);
+      case 6:
+        return Number<std::uint32_t>(bytes);
+      case 7:
+        return Number<float>(bytes);
+      default:
+        return Number<double>(bytes);
+    }
+  }
+
+ private:
+  template <typename T>
+  double Number(const unsigned char* bytes) const {
+    std::array<unsigned char, sizeof(T)> own{};
+    std::memcpy(own.data(), bytes, sizeof(T));
+    if (swapped_) std::reverse(own.begin(), own.end());
+    T value{};
+    std::memcpy(&value, own.data(), sizeof(T));
+    return static_cast<double>(value);
+  }
+
+  std::size_t offset_;
+  std::uint8_t type_;
+  bool swapped_;
+};
+
+/// s after `stamp`, of times in whatever unit; empty: they tell nothing. A sweep lasts between 2 ms
+/// and 2 s, which only one of the units makes of it.
+std::vector<float> SecondsAfter(double stamp, const std::vector<double>& times) {
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (const double time : times) {
+    if (!std::isfinite(time)) continue;
+    first = std::min(first, time);
+    last = std::max(last, time);
+  }
+  constexpr double kShortest = 0.002;
+  constexpr double kLongest = 2.0;
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
+    const double span = (last - first) * unit;
+    if (!(span > kShortest && span <= kLongest)) continue;
+    // By the clock of the header, or counted from it, or by a clock that nobody knows.
+    constexpr double kNear = 10.0;  // s
+    double zero = first;
+    if (std::abs(first * unit - stamp) < kNear) {
+      zero = stamp / unit;
+    } else if (std::abs(first * unit) < kNear) {
+      zero = 0.0;
+    }
+    std::vector<float> seconds;
+    seconds.reserve(times.size());
+    for (const double time : times) {
+      seconds.push_back(std::isfinite(time) ? static_cast<float>((time - zero) * unit) : 0.0F);
+    }
+    return seconds;
+  }
+  return {};
+}
+
+std::optional<FieldReader> ReaderOf(const CloudMessage& message,
+                                    const std::set<std::string>& names) {
+  const Field* field = message.Find(names);
+  if (field == nullptr || field->size() == 0) return std::nullopt;
+  return FieldReader(*field, message.is_bigendian);
+}
+
+}  // namespace
+
+std::optional<RosPointCloud> ParsePointCloud(const unsigned char* data, std::size_t size,
+                                             MessageEncoding encoding) {
+  const CloudMessage message = ReadMessage(data, size, encoding);
+  if (!FaultOf(message).empty()) return std::nullopt;
+  const FieldReader x = *ReaderOf(message, {"x"});
+  const FieldReader y = *ReaderOf(message, {"y"});
+  const FieldReader z = *ReaderOf(message, {"z"});
+  const auto intensity = ReaderOf(message, {"intensity", "reflectivity", "i"});
+  const auto time =
+      ReaderOf(message, {"t", "time", "timestamp", "time_stamp", "offset_time", "timeoffset"});
+
+  RosPointCloud cloud;
+  cloud.header = message.header;
+  std::vector<double> times;
+  for (std::uint64_t row = 0; row < message.height; ++row) {
+    const unsigned char* point = message.data.data + row * message.row_step;
+    for (std::uint64_t i = 0; i < message.width; ++i, point += message.point_step) {
+      CloudPoint read;
+      read.position = Eigen::Vector3d(x.At(point), y.At(point), z.At(point)).cast<float>();
+      const float reach = read.position.cwiseAbs().maxCoeff();
+      if (!read.position.allFinite() || !(reach > 0.0F) || reach > kFarthest) continue;
+      if (intensity) read.intensity = static_cast<float>(intensity->At(point));
+      if (time) times.push_back(time->At(point));
+      cloud.points.push_back(read);
+    }
+  }
+  const std::vector<float> seconds = SecondsAfter(cloud.header.stamp, times);
+  cloud.has_times = !seconds.empty();
+  for (std::size_t i = 0; i < seconds.size(); ++i) cloud.points[i].time = seconds[i];
+  return cloud;
+}
+
+std::string FaultOfPointCloud(const unsigned char* data, std::size_t size,
+                              MessageEncoding encoding) {
+  return FaultOf(ReadMessage(data, size, encoding));
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/sensor/virtual_scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "masked_mapper/geometry/angle.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kAboveFloor = 0.3;    // m, of the band's lower end: bags, thresholds, feet
+constexpr double kTopOfBand = 1.8;     // m, a hand below the lintel of a door
+constexpr double kBelowCeiling = 0.3;  // m
+constexpr double kAboutLidar = 0.2;    // m: rays that fly level reach farthest
+
+constexpr std::array<std::size_t, 6> kBeams = {1440, 1080, 720, 540, 360, 180};
+constexpr std::size_t kRaysPerBeam = 24;
+
+// A wall leans by this over the band when a ramp or a threshold tilts the robot, and a scanner's
+// noise is less.
+constexpr float kThick = 0.1F;     // m
+constexpr float kFlattest = 0.1F;  // share of the range by which a wall may recede in one beam
+constexpr float kLeastUpright =
+    0.2F;  // m that returns must lie over one another: more than a stair
+constexpr int kStoppedPerPassed = 2;
+
+/// The direction in [0, 1] of a turn, from straight behind; not a number: the ray goes nowhere.
+std::vector<float> Directions(const CloudPoints& points, const Eigen::Vector3f& lidar) {
+  std::vector<float> directions;
+  directions.reserve(points.size());
+  for (const CloudPoint& point : points) {
+    const float x = point.position.x() - lidar.x();
+    const float y = point.position.y() - lidar.y();
+    const bool is_ray = std::abs(x) + std::abs(y) > 0.0F;
+    directions.push_back(is_ray ? std::atan2(y, x) / static_cast<float>(2.0 * kPi) + 0.5F
+                                : kInvalidRange);
+  }
+  return directions;
+}
+
+std::size_t BeamOf(float direction, std::size_t beams) {
+  return static_cast<std::size_t>(std::lround(direction * static_cast<float>(beams))) % beams;
+}
+
+/// The finest beams that the rays fill: enough in each, and none between two columns of the lidar.
+std::size_t FinestBeams(const std::vector<float>& directions) {
+  for (const std::size_t beams : kBeams) {
+    if (beams * kRaysPerBeam > directions.size()) continue;
+    std::vector<char> is_filled(beams, 0);
+    for (const float direction : directions) {
+      if (!std::isnan(direction)) is_filled[BeamOf(direction, beams)] = 1;
+    }
+    std::size_t filled = 0;
+    std::size_t holes = 0;
+    for (std::size_t beam = 0; beam < beams; ++beam) {
+      filled += is_filled[beam] != 0 ? 1 : 0;
+      const bool between =
+          is_filled[(beam + 1) % beams] != 0 && is_filled[(beam + beams - 1) % beams] != 0;
+      holes += is_filled[beam] == 0 && between ? 1 : 0;
+    }
+    constexpr std::size_t kFewHoles = 50;  // one of so many
+    if (holes * kFewHoles <= filled) return beams;
+  }
+  return kBeams.back();
+}
+
+struct Ray {
+  float range = 0.0F;   // m, over the ground
+  float height = 0.0F;  // m, of the return
+  float offset = 0.0F;  // rad, off the middle of the beam
+};
+
+/// The rays of one beam, nearest first.
+class Beam {
+ public:
+  Beam(const Ray* begin, const Ray* end, float lidar_height, const WallBand& band)
+      : begin_(begin),
+        end_(end),
+        lidar_height_(lidar_height),
+        low_(static_cast<float>(band.low_m)),
+        high_(static_cast<float>(band.high_m)) {}
+
+  /// The nearest return inside the band; infinity without one.
+  float Nearest() const {
+    const Ray* ray = std::find_if(begin_, end_, [this](const Ray& r) { return InBand(r.height); });
+    return ray == end_ ? kNoReturn : ray->range;
+  }
+
+  /// The range of the wall; not a number without one. `recedes`: m by which a wall may change its
+  /// range across the beam.
+  float Wall(float recedes) const {
+    float rejected = 0.0F;
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      if (!InBand(ray->height) || ray->range < rejected) continue;
+      const float thick = kThick + std::min(recedes, kFlattest * ray->range);
+      if (IsWall(ray->range, thick)) return At(ray->range, thick);
+      rejected = ray->range + 0.25F * thick;
+    }
+    return kInvalidRange;
+  }
+
+ private:
+  bool InBand(float height) const { return height >= low_ && height <= high_; }
+
+  bool IsWall(float range, float thick) const {
+    // Returns up to two thicknesses behind the first are one wall.
+    const float behind = range + 2.0F * thick;
+    float lowest = kNoReturn;
+    float highest = -kNoReturn;
+    int stopped = 0;
+    int passed = 0;
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      if (ray->range < range) continue;
+      if (ray->range <= behind) {
+        lowest = std::min(lowest, ray->height);
+        highest = std::max(highest, ray->height);
+        stopped += InBand(ray->height) ? 1 : 0;
+      } else {
+        const float there =
+            lidar_height_ + (ray->height - lidar_height_) * (range + thick) / ray->range;
+        passed += InBand(there) ? 1 : 0;
+      }
+    }
+    return stopped >= 2 && highest - lowest >= kLeastUpright &&
+           stopped >= kStoppedPerPassed * passed;
+  }
+
+  /// Where the middle of the beam meets the wall: along a straight wall 1 / range is linear in the
+  /// direction.
+  float At(float range, float thick) const {
+    double n = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+    double xx = 0.0;
+    double xy = 0.0;
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      if (ray->range < range || ray->range > range + 2.0F * thick || !InBand(ray->height)) continue;
+      const double inverse = 1.0 / ray->range;
+      n += 1.0;
+      x += ray->offset;
+      y += inverse;
+      xx += static_cast<double>(ray->offset) * ray->offset;
+      xy += ray->offset * inverse;
+    }
+    const double mean = y / n;
+    const double spread = xx - x * x / n;
+    // Few rays, all to one side, say nothing of the slope; nor does one steeper than the window.
+    if (n < 4.0 || !(spread > 0.0)) return static_cast<float>(1.0 / mean);
+    const double slope = (xy - x * y / n) / spread;
+    const double at_middle = mean - slope * x / n;
+    const double found = 1.0 / at_middle;
+    const double plain = 1.0 / mean;
+    return static_cast<float>(std::clamp(found, plain - thick, plain + thick));
+  }
+
+  const Ray* begin_;
+  const Ray* end_;
+  float lidar_height_;
+  float low_;
+  float high_;
+};
+
+/// All rays by their beams, each nearest first.
+class Sweep {
+ public:
+  Sweep(const CloudPoints& points, const Eigen::Vector3f& lidar,
+        const std::vector<float>& directions, std::size_t beams)
+      : begins_(beams + 1, 0) {
+    std::vector<std::size_t> beam_of;
+    std::vector<Ray> rays;
+    beam_of.reserve(points.size());
+    rays.reserve(points.size());
+    const auto step = static_cast<float>(2.0 * kPi / static_cast<double>(beams));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::isnan(directions[i])) continue;
+      const Eigen::Vector3f& position = points[i].position;
+      const float range = (position - lidar).head<2>().norm();
+      const float in_beams = directions[i] * static_cast<float>(beams);
+      beam_of.push_back(BeamOf(directions[i], beams));
+      rays.push_back({range, position.z(), (in_beams - std::round(in_beams)) * step});
+      ++begins_[beam_of.back() + 1];
+    }
+    for (std::size_t beam = 0; beam < beams; ++beam) begins_[beam + 1] += begins_[beam];
+    rays_.resize(rays.size());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    for (std::size_t i = 0; i < rays.size(); ++i) rays_[next[beam_of[i]]++] = rays[i];
+    for (std::size_t beam = 0; beam < beams; ++beam) {
+      std::sort(rays_.data() + begins_[beam], rays_.data() + begins_[beam + 1],
+                [](const Ray& a, const Ray& b) {
+                  return a.range != b.range ? a.range < b.range : a.height < b.height;
+                });
+    }
+  }
+
+  Beam At(std::size_t beam, float lidar_height, const WallBand& band) const {
+    return {rays_.data() + begins_[beam], rays_.data() + begins_[beam + 1], lidar_height, band};
+  }
+
+ private:
+  std::vector<std::size_t> begins_;
+  std::vector<Ray> rays_;
+};
+
+}  // namespace
+
+WallBand BandBetween(const Ground& ground, double lidar_height_m, const WallBand& given) {
+  WallBand band;
+  band.low_m = lidar_height_m > 0.0 ? std::min(kAboveFloor, 0.5 * lidar_height_m) : kAboveFloor;
+  band.high_m = std::max(kTopOfBand, lidar_height_m + kAboutLidar);
+  if (ground.ceiling_m) {
+    const double ceiling = *ground.ceiling_m - ground.floor_m;
+    band.high_m = std::min(band.high_m, std::max(ceiling - kBelowCeiling, lidar_height_m));
+  }
+  if (given.low_m > 0.0) band.low_m = given.low_m;
+  if (given.high_m > 0.0) band.high_m = given.high_m;
+  return band;
+}
+
+LaserScan CutToScan(const CloudPoints& points_in_level, const Eigen::Vector3d& lidar_in_level,
+                    const WallBand& band, float max_range) {
+  const Eigen::Vector3f lidar = lidar_in_level.cast<float>();
+  const std::vector<float> directions = Directions(points_in_level, lidar);
+  const std::size_t beams = FinestBeams(directions);
+  const Sweep sweep(points_in_level, lidar, directions, beams);
+  const float lidar_height = lidar.z();
+
+  std::vector<float> nearest(beams);
+  for (std::size_t i = 0; i < beams; ++i) nearest[i] = sweep.At(i, lidar_height, band).Nearest();
+
+  LaserScan scan;
+  scan.T_robot_laser = {lidar_in_level.x(), lidar_in_level.y(), 0.0};
+  scan.angle_step = 2.0 * kPi / static_cast<double>(beams);
+  scan.first_angle = -kPi;
+  scan.max_range = max_range;
+  scan.ranges.resize(beams);
+  for (std::size_t i = 0; i < beams; ++i) {
+    const auto step_to = [&](std::size_t other) {
+      const float step = std::abs(nearest[i] - nearest[other]);
+      return std::isfinite(step) ? step : 0.0F;
+    };
+    const float recedes = std::max(step_to((i + 1) % beams), step_to((i + beams - 1) % beams));
+    const float wall = sweep.At(i, lidar_height, band).Wall(recedes);
+    scan.ranges[i] = wall < max_range ? wall : kInvalidRange;
+  }
+  return scan;
+}
+
+}  // namespace masked_mapper
