@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct SimulateArguments {
   std::uint64_t tour = 1;
   double length_m = 0.0;
   std::vector<std::string> visits;
+  std::string lidar = "2d";
+  bool with_imu = false;
   bool perfect = false;
   bool floor_labels = false;
   bool without_pressure = false;
@@ -60,6 +63,24 @@ std::vector<std::size_t> FloorsCalled(const Building& building,
   return floors;
 }
 
+/// Text has no word for clouds.
+void ChooseLidar(const SimulateArguments& arguments, SimulationOptions* options) {
+  if (arguments.lidar == "2d") return;
+  const std::optional<SpaceLidarModel> model = SpaceLidarCalled(arguments.lidar);
+  if (!model) {
+    std::vector<std::string> known = SpaceLidarNames();
+    known.insert(known.begin(), "2d");
+    throw InputError("--lidar: there is no lidar `" + arguments.lidar + "`" +
+                     DidYouMean(arguments.lidar, known));
+  }
+  const std::string ending = std::filesystem::path(arguments.log).extension().string();
+  if (ending != ".bag" && ending != ".mcap") {
+    throw InputError("--lidar " + arguments.lidar + ": " + arguments.log +
+                     " is text, which has no word for clouds; name it .bag or .mcap");
+  }
+  options->space_lidar = OptionsOf(*model);
+}
+
 int RunSimulate(const SimulateArguments& arguments) {
   CheckOutput(arguments);
   const Building building = LoadBuilding(arguments.building, arguments.seed);
@@ -69,6 +90,9 @@ int RunSimulate(const SimulateArguments& arguments) {
   options.length = arguments.length_m;
   options.visits = FloorsCalled(building, arguments.visits);
   options.floor_labels = arguments.floor_labels;
+  ChooseLidar(arguments, &options);
+  constexpr double kImuRate = 100.0;  // Hz
+  if (arguments.with_imu) options.acceleration.rate = kImuRate;
   if (arguments.without_pressure) options.pressure.rate = 0.0;
   const SimulationNoise noise = arguments.perfect ? SimulationNoise::None() : SimulationNoise{};
 
@@ -130,6 +154,12 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LABEL,...");
+  command
+      ->add_option("--lidar", arguments->lidar,
+                   "2d, or a 3D one, whose clouds need a bag: vlp16, os1-32, mid360")
+      ->capture_default_str()
+      ->type_name("MODEL");
+  command->add_flag("--with-imu", arguments->with_imu, "an accelerometer, 100 Hz");
   command->add_flag("--perfect", arguments->perfect, "no noise, no drift, no people");
   command->add_flag("--floor-labels", arguments->floor_labels,
                     "write FLOOR lines, as an elevator's interface would");
@@ -142,6 +172,7 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
       "  masked_mapper simulate --building campus -o campus.log.gz --seed 7 --length 5000\n"
       "  masked_mapper simulate --building campus -o again.log.gz --seed 7 --tour 2\n"
       "  masked_mapper simulate --building office -o office.mcap\n"
+      "  masked_mapper simulate --building office --lidar vlp16 -o office_3d.mcap\n"
       "\n"
       "Beside LOG (without its .gz) stand LOG.truth.tum, the true pose at every scan, and\n"
       "LOG.truth_floors.csv, the true floor.");

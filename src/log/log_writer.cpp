@@ -16,6 +16,7 @@
 #include "log_sink.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/scan_calibration.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "mcap_writer.hpp"
 #include "ros1_bag_writer.hpp"
 #include "ros_log_writer.hpp"
@@ -93,6 +94,10 @@ class CarmenWriter final : public LogSink {
   void Write(const Observation& observation) override {
     std::visit([this](const auto& reading) { WriteReading(reading); }, observation);
     FlushWhenFull();
+  }
+
+  void WriteCloud(const CloudReading&) override {
+    throw InputError("a text log has no word for clouds; write them to a .bag or .mcap");
   }
 
   void WriteComment(const std::string& text) override {
@@ -267,6 +272,7 @@ LogWriter::~LogWriter() {
 }
 
 void LogWriter::Write(const Observation& observation) { sink_->Write(observation); }
+void LogWriter::WriteCloud(const CloudReading& cloud) { sink_->WriteCloud(cloud); }
 void LogWriter::WriteComment(const std::string& text) { sink_->WriteComment(text); }
 void LogWriter::Close() { sink_->Close(); }
 

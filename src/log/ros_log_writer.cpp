@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kOdometryFrame = "odom";
 constexpr const char* kRobotFrame = "base_link";
 constexpr const char* kLaserFrame = "laser";
+constexpr const char* kLidarFrame = "lidar";
 
 Eigen::Isometry3d InSpace(const Pose2& pose) {
   Eigen::Isometry3d transform(Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ()));
@@ -34,6 +35,18 @@ class RosLogWriter final : public LogSink {
 
   void Write(const Observation& observation) override {
     std::visit([this](const auto& reading) { WriteReading(reading); }, observation);
+  }
+  void WriteCloud(const CloudReading& cloud) override {
+    if (!has_lidar_mount_) {
+      has_lidar_mount_ = true;
+      const RosTransform mount{{cloud.stamp, kRobotFrame}, kLidarFrame, cloud.T_robot_lidar};
+      Put("/tf_static", TopicKind::kTransforms, cloud.stamp,
+          WriteTransforms({mount}, bag_->Encoding()));
+    }
+    if (cloud.T_odom_robot) WriteOdometryAt(cloud.stamp, *cloud.T_odom_robot);
+    const RosPointCloud message{{cloud.stamp, kLidarFrame}, cloud.points, true};
+    Put("/points", TopicKind::kCloud, cloud.stamp,
+        WritePointCloud(message, cloud.layout, bag_->Encoding()));
   }
   void WriteComment(const std::string&) override {}
   void Close() override {
@@ -103,6 +116,7 @@ class RosLogWriter final : public LogSink {
   std::unique_ptr<BagWriter> bag_;
   std::map<std::string, std::uint16_t> topics_;
   std::optional<Pose2> T_robot_laser_;
+  bool has_lidar_mount_ = false;
   bool closed_ = false;
 };
 

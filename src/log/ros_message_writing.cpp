@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_message_writing.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 #include "ros_fields.hpp"
 
 namespace masked_mapper {
@@ -40,7 +43,94 @@ void PutCovariance(double first, int elements, Output* output) {
   for (int i = 1; i < elements; ++i) output->Number(0.0);
 }
 
+struct WrittenField {
+  const char* name;
+  std::uint32_t offset;
+  std::uint8_t type;  ///< sensor_msgs/PointField
+};
+
+/// x, y, z and intensity, then the time.
+struct WrittenLayout {
+  std::vector<WrittenField> fields;
+  std::uint32_t step = 0;
+};
+
+WrittenLayout FieldsOf(CloudLayout layout) {
+  constexpr std::uint8_t kUint32 = 6;
+  constexpr std::uint8_t kFloat32 = 7;
+  constexpr std::uint8_t kFloat64 = 8;
+  WrittenLayout written;
+  written.fields = {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}};
+  const auto add = [&written](WrittenField intensity, WrittenField time, std::uint32_t step) {
+    written.fields.push_back(intensity);
+    written.fields.push_back(time);
+    written.step = step;
+  };
+  switch (layout) {
+    case CloudLayout::kVelodyne:
+      add({"intensity", 12, kFloat32}, {"time", 16, kFloat32}, 20);
+      break;
+    case CloudLayout::kOuster:
+      add({"intensity", 16, kFloat32}, {"t", 20, kUint32}, 24);
+      break;
+    case CloudLayout::kLivox:
+      add({"intensity", 12, kFloat32}, {"timestamp", 16, kFloat64}, 24);
+      break;
+  }
+  return written;
+}
+
+/// ns after `stamp`, in the numbers of the layout.
+std::string TimeBytes(CloudLayout layout, double stamp, float seconds_after) {
+  std::string bytes;
+  const double nanoseconds = 1e9 * static_cast<double>(seconds_after);
+  if (layout == CloudLayout::kVelodyne) AppendNumber(seconds_after, &bytes);
+  if (layout == CloudLayout::kOuster) {
+    AppendNumber(static_cast<std::uint32_t>(std::max(0.0, nanoseconds)), &bytes);
+  }
+  if (layout == CloudLayout::kLivox) AppendNumber(1e9 * stamp + nanoseconds, &bytes);
+  return bytes;
+}
+
+std::string PointBytes(const RosPointCloud& cloud, CloudLayout layout,
+                       const WrittenLayout& written) {
+  std::string data(cloud.points.size() * written.step, '\0');
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const CloudPoint& point = cloud.points[i];
+    char* const begin = data.data() + i * written.step;
+    std::memcpy(begin, point.position.data(), 3 * sizeof(float));
+    std::memcpy(begin + written.fields[3].offset, &point.intensity, sizeof(float));
+    const std::string time = TimeBytes(layout, cloud.header.stamp, point.time);
+    std::memcpy(begin + written.fields[4].offset, time.data(), time.size());
+  }
+  return data;
+}
+
 }  // namespace
+
+std::string WritePointCloud(const RosPointCloud& cloud, CloudLayout layout,
+                            MessageEncoding encoding) {
+  const WrittenLayout written = FieldsOf(layout);
+  const std::string data = PointBytes(cloud, layout, written);
+  return Written(encoding, [&](auto* output) {
+    output->Header(cloud.header);
+    output->Number(std::uint32_t{1});
+    output->Number(static_cast<std::uint32_t>(cloud.points.size()));
+    output->Number(static_cast<std::uint32_t>(written.fields.size()));
+    for (const WrittenField& field : written.fields) {
+      output->String(field.name);
+      output->Number(field.offset);
+      output->Number(field.type);
+      output->Number(std::uint32_t{1});
+    }
+    output->Number(std::uint8_t{0});  // little-endian
+    output->Number(written.step);
+    output->Number(static_cast<std::uint32_t>(data.size()));  // of the only row
+    output->Number(static_cast<std::uint32_t>(data.size()));
+    output->Bytes(data);
+    output->Number(std::uint8_t{1});  // dense
+  });
+}
 
 std::string WriteLaserScan(const RosLaserScan& scan, MessageEncoding encoding) {
   return Written(encoding, [&scan](auto* output) {

@@ -6,12 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
+#include "masked_mapper/log/ros_point_cloud.hpp"
 
 namespace masked_mapper {
 
 /// Stamps are written to a microsecond.
 std::string WriteLaserScan(const RosLaserScan& scan, MessageEncoding encoding);
+/// Times as the layout tells them, coordinates as it lays them out.
+std::string WritePointCloud(const RosPointCloud& cloud, CloudLayout layout,
+                            MessageEncoding encoding);
 std::string WriteOdometry(const RosOdometry& odometry, MessageEncoding encoding);
 std::string WriteTransforms(const std::vector<RosTransform>& transforms, MessageEncoding encoding);
 std::string WriteImu(const RosImu& imu, MessageEncoding encoding);

@@ -84,13 +84,18 @@ class DrivenSensors {
         odometry_(noise.odometry, options.seed),
         pressure_(options.pressure, noise.pressure, options.seed),
         acceleration_(noise.acceleration, options.seed),
-        scan_ticks_(options.lidar.rate, drive.Duration()),
+        scan_ticks_(options.space_lidar ? options.space_lidar->rate : options.lidar.rate,
+                    drive.Duration()),
         odometry_ticks_(options.odometry_rate, drive.Duration()),
         pressure_ticks_(options.pressure.rate, drive.Duration()),
         acceleration_ticks_(options.acceleration.rate, drive.Duration()),
         start_(drive.At(0.0)),
         T_building_world_(Snapped(start_.T_building_robot)),
-        T_building_before_(T_building_world_) {}
+        T_building_before_(T_building_world_) {
+    if (options.space_lidar) {
+      space_lidar_.emplace(building, *options.space_lidar, noise.lidar, options.seed);
+    }
+  }
 
   const Pose2& T_building_world() const { return T_building_world_; }
   std::size_t start_floor() const { return start_.floor; }
@@ -154,10 +159,17 @@ class DrivenSensors {
       sink_.truth({stamp, Between(T_building_world_, state.T_building_robot),
                    state.elevation - start_.elevation, label});
     }
-    LaserScan scan = lidar_.Scan(time, state);
-    scan.stamp = stamp;
-    scan.T_odom_robot = odometry_.T_odom_robot();
-    Emit(scan);
+    if (space_lidar_) {
+      CloudReading cloud = space_lidar_->Sweep(time, [this](double t) { return drive_.At(t); });
+      cloud.stamp = stamp;
+      cloud.T_odom_robot = odometry_.T_odom_robot();
+      if (sink_.cloud) sink_.cloud(cloud);
+    } else {
+      LaserScan scan = lidar_.Scan(time, state);
+      scan.stamp = stamp;
+      scan.T_odom_robot = odometry_.T_odom_robot();
+      Emit(scan);
+    }
     if (sink_.progress && scans_ % 256 == 0) sink_.progress(time / drive_.Duration());
   }
 
@@ -166,6 +178,7 @@ class DrivenSensors {
   const SimulationOptions& options_;
   const SimulationSink& sink_;
   LidarSimulation lidar_;
+  std::optional<SpaceLidar> space_lidar_;
   OdometrySimulation odometry_;
   PressureSimulation pressure_;
   AccelerationSimulation acceleration_;

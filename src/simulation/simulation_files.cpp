@@ -102,6 +102,7 @@ SimulationSummary SimulateToFiles(const Building& building, const SimulationOpti
   floors.Text("t,label\n");
   SimulationSink sink;
   sink.observation = [&](const Observation& observation) { log.Write(observation); };
+  sink.cloud = [&](const CloudReading& cloud) { log.WriteCloud(cloud); };
   sink.truth = [&](const TruthPose& pose) {
     constexpr int kDecimals = 6;
     truth.Number(pose.stamp, kDecimals);

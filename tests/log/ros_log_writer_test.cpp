@@ -8,6 +8,8 @@
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/log_writer.hpp"
+#include "masked_mapper/log/open_bag.hpp"
+#include "masked_mapper/log/ros_point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -45,7 +47,45 @@ void WriteDriveTo(const std::string& path) {
   log.Close();
 }
 
+/// What is written of a cloud and read of the file.
+RosPointCloud WrittenAndRead(const std::string& ending, const CloudReading& cloud) {
+  const TemporaryFile file(ending);
+  LogWriter log(file.path());
+  log.WriteCloud(cloud);
+  log.Close();
+  const std::unique_ptr<RosBag> bag = OpenBag(file.path());
+  while (const std::optional<BagMessage> message = bag->Next()) {
+    if (bag->Connections().at(message->connection).topic != "/points") continue;
+    auto parsed = ParsePointCloud(message->data, message->size, message->encoding);
+    if (parsed) return *parsed;
+    ADD_FAILURE() << FaultOfPointCloud(message->data, message->size, message->encoding);
+  }
+  return {};
+}
+
 class RosLogWriterTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RosLogWriterTest, CloudsOfAllLayoutsAreReadAgain) {
+  for (const CloudLayout layout :
+       {CloudLayout::kVelodyne, CloudLayout::kOuster, CloudLayout::kLivox}) {
+    CloudReading cloud;
+    cloud.stamp = 1.7e9;
+    cloud.layout = layout;
+    for (int i = 0; i < 500; ++i) {
+      const auto value = static_cast<float>(i + 1);
+      cloud.points.push_back({{value, -value, 0.5F}, 0.1F * value, 2e-4F * value});
+    }
+    const RosPointCloud read = WrittenAndRead(GetParam(), cloud);
+    EXPECT_NEAR(read.header.stamp, cloud.stamp, 1e-6);
+    EXPECT_TRUE(read.has_times);
+    ASSERT_EQ(read.points.size(), cloud.points.size());
+    for (std::size_t i = 0; i < read.points.size(); ++i) {
+      ASSERT_EQ(read.points[i].position, cloud.points[i].position);
+      ASSERT_EQ(read.points[i].intensity, cloud.points[i].intensity);
+      ASSERT_NEAR(read.points[i].time, cloud.points[i].time, 1e-6);
+    }
+  }
+}
 
 TEST_P(RosLogWriterTest, WhatWasWrittenIsRead) {
   const TemporaryFile file(GetParam());

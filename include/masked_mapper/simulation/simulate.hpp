@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "masked_mapper/simulation/odometry_simulation.hpp"
 #include "masked_mapper/simulation/pressure.hpp"
 #include "masked_mapper/simulation/robot_drive.hpp"
+#include "masked_mapper/simulation/space_lidar.hpp"
 
 namespace masked_mapper {
 
@@ -29,6 +31,7 @@ struct SimulationOptions {
   DriveOptions drive;               ///< its seed is set from `seed`
   bool usual_rest = true;           ///< stand about as long as is usual in the building
   LidarOptions lidar;
+  std::optional<SpaceLidarOptions> space_lidar;  ///< in place of the 2D scanner
   double odometry_rate = 10.0;  ///< Hz, of readings besides those in scans; 0: none
   PressureOptions pressure;
   AccelerationOptions acceleration;
@@ -56,6 +59,7 @@ struct TruthPose {
 /// Where a simulation goes; all may be empty.
 struct SimulationSink {
   std::function<void(const Observation&)> observation;  ///< in order of stamps
+  std::function<void(const CloudReading&)> cloud;       ///< among them
   std::function<void(const TruthPose&)> truth;          ///< one per scan, just before it
   std::function<void(double)> progress;                 ///< share done, 0 to 1
 };

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A 3D lidar in a simulated building. The plan's segments get heights: walls and glass reach the
+// ceiling, doors a lintel, furniture is desks, cupboards and shelves; floors and ceilings are flat,
+// people have bodies. The robot moves while a sweep is taken, and every return has its own time.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/log/log_writer.hpp"
+#include "masked_mapper/simulation/lidar_simulation.hpp"
+
+namespace masked_mapper {
+
+enum class SpaceLidarModel { kVlp16, kOs1_32, kMid360 };
+/// By the names of the command line; empty: none of them.
+std::optional<SpaceLidarModel> SpaceLidarCalled(const std::string& name);
+std::vector<std::string> SpaceLidarNames();
+
+/// What is public of such a lidar, in its usual mode.
+struct SpaceLidarOptions {
+  SpaceLidarModel model = SpaceLidarModel::kVlp16;
+  double rate = 10.0;                              ///< Hz, of sweeps
+  double max_range = 100.0;                        ///< m
+  double min_range = 0.3;                          ///< m
+  double sigma = 0.02;                             ///< m
+  Eigen::Vector3d lidar_on_robot{0.12, 0.0, 0.6};  ///< m; it stands upright and looks ahead
+  CloudLayout layout = CloudLayout::kVelodyne;
+};
+SpaceLidarOptions OptionsOf(SpaceLidarModel model);
+
+/// What stands upright between two heights above the floor, m.
+struct Upright {
+  Segment segment;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+class SpaceLidar {
+ public:
+  /// `noise`: glass, lost beams, people; the sigma of ranges is the lidar's own, but 0 where that
+  /// of `noise` is.
+  SpaceLidar(const Building& building, const SpaceLidarOptions& options, const LidarNoise& noise,
+             std::uint64_t seed);
+
+  /// The sweep that ends at `time` (s from the start, not before that of the last call), or begins
+  /// there where the layout counts times from its stamp; `state_at` tells where the robot is. Stamp
+  /// and odometry are left to the caller.
+  CloudReading Sweep(double time, const std::function<RobotState(double)>& state_at);
+
+  /// m above each floor.
+  double Ceiling(std::size_t floor) const { return ceilings_[floor]; }
+  /// What stands on a floor, people and cab doors aside.
+  const std::vector<Upright>& Standing(std::size_t floor) const { return standing_[floor]; }
+
+ private:
+  struct Ray {
+    double turn = 0.0;   ///< rad, from ahead
+    double slope = 0.0;  ///< up per m over the ground
+    double time = 0.0;   ///< s, after the stamp of the sweep
+  };
+  struct Crossing {
+    double range = 0.0;  ///< m, over the ground
+    double low = 0.0;    ///< m above the floor
+    double high = 0.0;
+    Surface surface = Surface::kWall;
+    double cosine = 1.0;
+  };
+
+  /// The rays of one sweep in the order in which they are sent.
+  std::vector<Ray> Rays();
+  /// All that a vertical half-plane from the lidar meets, nearest first, up to what hides the rest.
+  void Cross(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction, std::size_t floor,
+             const std::vector<Segment>& doors, const std::vector<Leg>& legs);
+  bool Return(const Ray& ray, double ceiling, CloudPoint* point);
+
+  const Building& building_;
+  SpaceLidarOptions options_;
+  LidarNoise noise_;
+  RandomGenerator random_;
+  People people_;
+  std::vector<std::vector<Upright>> standing_;
+  std::vector<SegmentIndex> index_;
+  std::vector<double> ceilings_;
+  std::vector<Crossing> crossings_;
+  std::uint64_t sent_ = 0;  ///< rays of all sweeps so far
+};
+
+}  // namespace masked_mapper
