@@ -63,7 +63,7 @@ LogSource::LogSource(const std::vector<std::string>& paths, const LogOptions& op
 LogSource::~LogSource() = default;
 
 std::unique_ptr<LogReader> LogSource::Read() const {
-  std::unique_ptr<LogReader> reader = plan_->Read();
+  std::unique_ptr<LogReader> reader = Mended(plan_->Read(), mending_);
   if (!spool_) return reader;
   return std::make_unique<SpooledReader>(spool_, std::move(reader));
 }

@@ -71,11 +71,21 @@ void Serialize(Archive& archive, SensorFinding& finding) {
 }
 
 template <class Archive>
+void Serialize(Archive& archive, TimeSpan& span) {
+  archive(span.start, span.end);
+}
+
+template <class Archive>
+void Serialize(Archive& archive, OdometryMending& mending) {
+  archive(mending.scan_clock_s, mending.travel_factor, mending.turn_factor, mending.left_out);
+}
+
+template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
   archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
           survey.median_turn_rad, survey.median_period_s, survey.floors.levels,
-          survey.floors.intervals, survey.floor_source, survey.findings, survey.reconsidered,
-          survey.warnings);
+          survey.floors.intervals, survey.floor_source, survey.findings, survey.mending,
+          survey.reconsidered, survey.warnings);
 }
 
 namespace {

@@ -10,13 +10,17 @@
 #include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
+#include "masked_mapper/motion/standstill_check.hpp"
+#include "masked_mapper/motion/wheel_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "unbroken_way.hpp"
+#include "wheel_mending.hpp"
 
 namespace masked_mapper {
 namespace {
 
-constexpr double kLongestSilence = 3.0;  // s; no odometry is so slow
+constexpr int kMostRounds = 3;  // of mending; what is still found then is left to the map
 
 /// One label may stand for the whole log; of several, none in the log's time means another clock.
 void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
@@ -29,20 +33,51 @@ void CheckClock(const std::string& path, const std::vector<FloorLabel>& labels,
                    FixedText(log.first_stamp, 3) + " to " + FixedText(log.last_stamp, 3) + " s");
 }
 
+std::vector<TimeSpan> SpansOf(const std::vector<FalseRest>& rests) {
+  std::vector<TimeSpan> spans;
+  for (const FalseRest& rest : rests) spans.push_back(rest.span);
+  return spans;
+}
+
 /// One pass through the log, scans with their beams: all that is to be known of it before it is
 /// mapped.
 class Surveyor {
  public:
-  Surveyor(const MappingOptions& options, const std::vector<FloorLabel>& labels)
-      : floors_(options.floors), mount_(options.motion) {
+  /// `mending` is that of the log which will be observed.
+  Surveyor(const MappingOptions& options, const std::vector<FloorLabel>& labels,
+           const OdometryMending& mending)
+      : floors_(options.floors),
+        standstill_(options.motion),
+        wheels_(options.motion),
+        unbroken_(options.motion, !mending.left_out.empty()),
+        asks_wheels_(options.motion.source != MotionSource::kScans) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
   }
 
   void Observe(const Observation& observation) {
-    floors_.Observe(observation);
-    if (const auto* reading = std::get_if<OdometryReading>(&observation)) NoteWay(*reading);
+    unbroken_.Follow(observation, [&](const Observation& followed) { floors_.Observe(followed); });
+    if (const auto* reading = std::get_if<OdometryReading>(&observation)) {
+      NoteWay(*reading);
+      if (asks_wheels_) {
+        standstill_.Observe(*reading);
+        wheels_.Observe(*reading);
+      }
+    }
     if (const auto* scan = std::get_if<LaserScan>(&observation)) ObserveScan(*scan);
   }
+
+  /// What is to be mended of the wheels, each with its finding.
+  WheelMending Wheels() const {
+    if (!asks_wheels_ || !survey_.odometry_moves) return {};
+    // With another clock wheels seem to stand still where they do not.
+    const std::vector<FalseRest> rests = standstill_.Find();
+    WheelReport report = wheels_.Find({});
+    if (!report.fault.scan_clock_s) report = wheels_.Find(SpansOf(rests));
+    return MendingOf(report.fault, rests, log_);
+  }
+
+  /// Behind the last observation.
+  const std::vector<UnbrokenWay::Silence>& silences() const { return unbroken_.silences(); }
 
   LogSurvey Finish() {
     survey_.floors = floors_.Finish();
@@ -50,12 +85,12 @@ class Surveyor {
     survey_.floor_source = floors_.source();
     survey_.warnings = floors_.warnings();
     if (survey_.odometry_moves) {
-      const std::string fault = mount_.Warning();
+      const WheelReport report = wheels_.Find(SpansOf(standstill_.Find()));
+      const std::string fault = WarningOf(FindMountFault(report.stretches), T_robot_laser_);
       if (!fault.empty()) survey_.warnings.push_back(fault);
     } else if (survey_.has_odometry) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
     }
-    TellSilence();
     survey_.median_travel_m = Median(std::move(travels_));
     survey_.median_turn_rad = Median(std::move(turns_));
     survey_.median_period_s = Median(std::move(periods_));
@@ -64,12 +99,18 @@ class Surveyor {
 
  private:
   void ObserveScan(const LaserScan& scan) {
-    ++survey_.scans;
-    NoteSilence(scan);
+    if (survey_.scans++ == 0) {
+      log_.start = scan.stamp;
+      T_robot_laser_ = scan.T_robot_laser;
+    }
+    log_.end = scan.stamp;
+    if (asks_wheels_) {
+      standstill_.Observe(scan);
+      wheels_.Observe(scan);
+    }
     if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
     stamp_before_ = scan.stamp;
     if (!scan.T_odom_robot) return;
-    if (!mount_.IsSettled()) mount_.Observe(scan);
     NoteWay({scan.stamp, *scan.T_odom_robot});
     if (T_odom_before_) {
       const Pose2 step = Between(*T_odom_before_, *scan.T_odom_robot);
@@ -80,23 +121,6 @@ class Surveyor {
       }
     }
     T_odom_before_ = scan.T_odom_robot;
-  }
-
-  void NoteSilence(const LaserScan& scan) {
-    if (scan.T_odom_robot || survey_.scans == 1) silence_.start = scan.stamp;
-    silence_.end = scan.stamp;
-    if (silence_.Duration() > longest_silence_.Duration()) longest_silence_ = silence_;
-  }
-
-  /// A motion that nobody measured is the worst to be silent about.
-  void TellSilence() {
-    const double duration = longest_silence_.Duration();
-    if (!survey_.has_odometry || duration <= kLongestSilence) return;
-    survey_.findings.push_back(
-        {"odometry is silent for " + FixedText(duration, 1) + " s from " +
-             FixedText(longest_silence_.start, 3) + " s on",
-         duration, 0.0, longest_silence_.start, longest_silence_.end,
-         "the way meanwhile may be wrong, and so may what was mapped after it"});
   }
 
   void NoteWay(const OdometryReading& reading) {
@@ -110,9 +134,12 @@ class Surveyor {
 
   LogSurvey survey_;
   FloorTracker floors_;
-  MountCheck mount_;
-  TimeSpan silence_;  ///< since the last scan with odometry
-  TimeSpan longest_silence_;
+  StandstillCheck standstill_;
+  WheelCheck wheels_;
+  UnbrokenWay unbroken_;
+  bool asks_wheels_;
+  Pose2 T_robot_laser_;
+  TimeSpan log_;                        ///< from the first scan to the last
   std::optional<double> stamp_before_;  ///< of the scan before, as all below
   std::optional<Pose2> T_odom_before_;
   std::optional<Pose2> T_odom_noted_;
@@ -128,9 +155,11 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
   std::vector<FloorLabel> labels;
   if (!options.floors.file.empty()) labels = ReadFloorFile(options.floors.file);
   bool reconsidered = false;
+  WheelMending wheels;
+  int rounds = 0;
   while (true) {
     const std::unique_ptr<LogReader> log = source.Read();
-    Surveyor surveyor(options, labels);
+    Surveyor surveyor(options, labels, wheels.mending);
     while (const std::optional<Observation> observation = log->Next()) {
       surveyor.Observe(*observation);
     }
@@ -138,12 +167,20 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
       reconsidered = true;
       continue;
     }
+    const WheelMending more = surveyor.Wheels();
+    if (!more.mending.IsNone() && rounds++ < kMostRounds) {
+      Add(more, &wheels);
+      source.Mend(wheels.mending);
+      continue;
+    }
     LogSurvey survey = surveyor.Finish();
     if (survey.scans == 0) throw InputError(source.path() + ": not one valid laser scan in it");
     if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
     survey.reconsidered = reconsidered;
-    const std::vector<SensorFinding> of_the_source = source.Findings();
-    survey.findings.insert(survey.findings.begin(), of_the_source.begin(), of_the_source.end());
+    survey.mending = wheels.mending;
+    survey.findings = source.Findings();
+    survey.findings.insert(survey.findings.end(), wheels.findings.begin(), wheels.findings.end());
+    AddSilences(surveyor.silences(), wheels.mending, &survey.findings);
     return survey;
   }
 }

@@ -88,6 +88,7 @@ class LogDrive {
         reader.RequireEnd();
         survey_ = UnpackSurvey(survey_bytes);
         if (survey_.reconsidered) ReadToTheEnd();
+        source_.Mend(survey_.mending);
       } else {
         survey_ = SurveyLog(source_, options_);
       }

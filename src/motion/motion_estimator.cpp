@@ -18,6 +18,7 @@ MotionEstimator::MotionEstimator(const MotionOptions& options)
 
 void MotionEstimator::Observe(const OdometryReading& reading) {
   wheels_.Observe(reading);
+  is_heard_ = true;
   gyro_bias_.Observe(reading);
 }
 
@@ -50,9 +51,18 @@ void MotionEstimator::LearnWheelNoise(const Pose2& by_wheels, const Pose2& corre
   wheels_.SetOptions(noise);
 }
 
-void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
+// Wheels tell of a step when they were heard at both ends of it. Where they come back, the way
+// meanwhile is not theirs to tell.
+bool MotionEstimator::HearsWheels(const LaserScan& scan) {
   if (scan.T_odom_robot) Observe(OdometryReading{scan.stamp, *scan.T_odom_robot});
-  const bool has_wheels = wheels_.HasStarted() && options_.source != MotionSource::kScans;
+  const bool hears = is_heard_ && (was_heard_ || !last_scan_stamp_);
+  was_heard_ = is_heard_;
+  is_heard_ = false;
+  return hears && options_.source != MotionSource::kScans;
+}
+
+void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
+  const bool has_wheels = HearsWheels(scan);
   UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
   wheels_.StartNode();
   const double elapsed = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;

@@ -9,6 +9,7 @@
 
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "scan_matching/box_scene.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -68,6 +69,50 @@ TEST(SurveyLog, CountsScansAndTheirSteps) {
   EXPECT_NEAR(survey.median_travel_m, 0.1, 1e-3);
   EXPECT_NEAR(survey.median_period_s, 0.2, 1e-3);
   EXPECT_EQ(SettleMotionSource(path, {}, survey), MotionSource::kFused);
+}
+
+/// Round and round through a furnished room at 5 Hz; the wheels freeze after 20 s for as long, then
+/// leap to where they should be.
+std::string FrozenLog(const std::string& name, double frozen_s) {
+  const std::string path = TemporaryLog(name);
+  const BoxScene room = FurnishedRoom();
+  LogWriter writer(path);
+  Pose2 T_world_robot{2.0, 2.5, 0.0};
+  Pose2 frozen;
+  for (int i = 0; i < 400; ++i) {
+    const double stamp = 1000.0 + 0.2 * i;
+    T_world_robot = T_world_robot * Pose2{0.06, 0.0, DegToRad(i % 60 < 30 ? 3.5 : 2.5)};
+    if (i <= 100) frozen = T_world_robot;
+    LaserScan scan = room.Scan(T_world_robot, 361, 270.0);
+    scan.stamp = stamp;
+    scan.T_odom_robot = i > 100 && i < 100 + 5.0 * frozen_s ? frozen : T_world_robot;
+    writer.Write(scan);
+  }
+  writer.Close();
+  return path;
+}
+
+TEST(SurveyLog, LeavesOutWheelsThatStandStillInPassing) {
+  for (const double frozen_s : {0.0, 10.0, 100.0}) {
+    const std::string path = FrozenLog("frozen.log", frozen_s);
+    LogSource source(path, {});
+    const LogSurvey survey = SurveyLog(source, {});
+    if (frozen_s == 0.0) {
+      EXPECT_TRUE(survey.mending.IsNone());
+      EXPECT_TRUE(survey.findings.empty());
+      continue;
+    }
+    ASSERT_EQ(survey.findings.size(), 1U) << "s: " << frozen_s;
+    EXPECT_NEAR(survey.findings[0].t_a, 1020.0, 0.5);
+    EXPECT_NEAR(survey.findings[0].t_b, std::min(1020.0 + frozen_s, 1079.8), 0.5);
+    // The source is read so from now on.
+    const std::unique_ptr<LogReader> log = source.Read();
+    while (const std::optional<Observation> observation = log->Next()) {
+      const auto& scan = std::get<LaserScan>(*observation);
+      const bool is_frozen = scan.stamp > 1020.3 && scan.stamp < 1019.8 + frozen_s;
+      EXPECT_FALSE(is_frozen && scan.T_odom_robot) << scan.stamp;
+    }
+  }
 }
 
 TEST(SurveyLog, ScansFarApartAreLeftToTheWheels) {

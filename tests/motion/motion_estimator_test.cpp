@@ -63,6 +63,30 @@ TEST(MotionEstimator, ScansAloneNeedNoWheels) {
   EXPECT_LT(RadToDeg(std::abs(WrapAngle(end.theta - expected.theta))), 0.5) << "deg";
 }
 
+TEST(MotionEstimator, SilenceOfTheWheelsIsNoRest) {
+  // Wheels are silent for a while, or from somewhere on, and tell of another frame when they
+  // return.
+  for (const std::size_t back : {std::size_t{120}, std::size_t{200}}) {
+    const std::vector<Pose2> truth = Drive(200);
+    const Pose2 expected = Between(truth.front(), truth.back());
+    MotionOptions options;
+    options.source = MotionSource::kFused;
+    MotionEstimator motion(options);
+    const BoxScene room = FurnishedRoom();
+    double worst = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      LaserScan scan = room.Scan(truth[i], 361, 270.0);
+      scan.stamp = 0.2 * static_cast<double>(i);
+      if (i < 60) scan.T_odom_robot = truth[i];
+      if (i >= back) scan.T_odom_robot = Pose2{70.0, -3.0, 2.0} * truth[i];
+      motion.Observe(scan);
+      worst = std::max(worst, Distance(motion.T_odom_robot(), Between(truth.front(), truth[i])));
+    }
+    EXPECT_LT(worst, 0.06) << "m";
+    EXPECT_LT(Distance(motion.T_odom_robot(), expected), 0.05) << "m";
+  }
+}
+
 TEST(MotionEstimator, ScansWithoutReturnsLeaveTheWheels) {
   MotionOptions options;
   options.source = MotionSource::kFused;

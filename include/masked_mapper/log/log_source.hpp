@@ -6,9 +6,11 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/odometry_mending.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
 
 namespace masked_mapper {
@@ -38,6 +40,8 @@ class LogSource {
   /// To be called behind the first pass, read to its end. True when all of the log says otherwise
   /// of its sensors than its beginning did: what was read is to be read again.
   bool Reconsider();
+  /// Passes from now on are mended so.
+  void Mend(OdometryMending mending) { mending_ = std::move(mending); }
   /// What the log says of its own sensors, as far as it was read.
   std::vector<SensorFinding> Findings() const;
 
@@ -45,6 +49,7 @@ class LogSource {
   std::string path_;
   std::shared_ptr<Spool> spool_;
   std::unique_ptr<LogPlan> plan_;
+  OdometryMending mending_;
 };
 
 }  // namespace masked_mapper

@@ -24,10 +24,12 @@ struct LogSurvey {
   FloorTimeline floors;
   FloorSource floor_source = FloorSource::kNone;  ///< what the floors were found by
   std::vector<SensorFinding> findings;
+  OdometryMending mending;    ///< of what scans found out of the wheels; the source is mended so
   bool reconsidered = false;  ///< all of the log said otherwise of its sensors than its beginning
   std::vector<std::string> warnings;
 };
 
+/// Wheels that scans find to lie are mended in `source`, and the log is then surveyed as mended.
 /// Throws InputError when the log cannot be read or holds no scan, or its file of floors is not one
 /// of this log.
 LogSurvey SurveyLog(LogSource& source, const MappingOptions& options);

@@ -37,6 +37,7 @@ class MotionEstimator {
 
   /// Observations in order of stamps. The path moves at scans; readings between them gather.
   /// `must_match`: the scene is about to be left, so that no correction may wait.
+  /// A scan before which the wheels were silent moved as scans say: silence is no rest.
   void Observe(const OdometryReading& reading);
   void Observe(const LaserScan& scan, bool must_match = false);
   /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
@@ -55,11 +56,12 @@ class MotionEstimator {
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
-            last_step_s_, in_transit_, T_odom_robot_, T_node_robot_);
+            last_step_s_, in_transit_, was_heard_, is_heard_, T_odom_robot_, T_node_robot_);
   }
 
  private:
   void RestartScans();
+  bool HearsWheels(const LaserScan& scan);
   UncertainPose2 StepWithoutWheels(double stamp) const;
   void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);
 
@@ -72,6 +74,8 @@ class MotionEstimator {
   UncertainPose2 last_step_;
   double last_step_s_ = 0.0;
   bool in_transit_ = false;  ///< since the scene was last begun anew
+  bool was_heard_ = false;   ///< the wheels, up to the scan before
+  bool is_heard_ = false;    ///< the wheels, since the scan before
   Pose2 T_odom_robot_;
   UncertainPose2 T_node_robot_;
 };

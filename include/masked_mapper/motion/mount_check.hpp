@@ -5,13 +5,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "masked_mapper/motion/motion_estimator.hpp"
-#include "masked_mapper/sensor/laser_scan.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
+#include "masked_mapper/motion/wheel_check.hpp"
 
 namespace masked_mapper {
 
@@ -24,36 +22,11 @@ struct MountFault {
   bool IsNone() const { return !upside_down && yaw == 0.0 && offset.isZero(); }
 };
 
-class MountCheck {
- public:
-  explicit MountCheck(const MotionOptions& options);
+/// No fault when too little was seen to tell.
+MountFault FindMountFault(const std::vector<StretchPair>& stretches);
 
-  /// Scans in order, with beams; those without odometry are passed over.
-  void Observe(const LaserScan& scan);
-  /// Whether enough was seen.
-  bool IsSettled() const;
-  /// No fault when too little was seen to tell.
-  MountFault Find() const;
-  /// One line that names the options to set; empty when nothing is wrong.
-  std::string Warning() const;
-
- private:
-  /// A stretch of the way, by wheels and by scans alone.
-  struct Stretch {
-    Pose2 by_wheels;
-    Pose2 by_scans;
-  };
-
-  bool IsUpsideDown() const;
-  double Yaw() const;
-  Eigen::Vector2d Offset() const;
-
-  MotionEstimator scans_;
-  std::size_t observed_ = 0;
-  std::optional<Stretch> begin_;  ///< poses at the begin of the present stretch
-  std::vector<Stretch> turns_;
-  std::vector<Stretch> straights_;
-  Pose2 T_robot_laser_;
-};
+/// One line that names the options to set; empty when nothing is wrong. `T_robot_laser` is as the
+/// log has it.
+std::string WarningOf(const MountFault& fault, const Pose2& T_robot_laser);
 
 }  // namespace masked_mapper

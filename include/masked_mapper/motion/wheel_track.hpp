@@ -10,15 +10,9 @@
 #include <vector>
 
 #include "masked_mapper/sensor/observation.hpp"
+#include "masked_mapper/sensor/time_span.hpp"
 
 namespace masked_mapper {
-
-struct TimeSpan {
-  double start = 0.0;  ///< s; minus infinity: from before the log
-  double end = 0.0;    ///< s; plus infinity: past the end of the log
-
-  double Duration() const { return end - start; }
-};
 
 class WheelTrack {
  public:

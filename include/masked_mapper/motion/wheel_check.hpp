@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What wheels are worth, by scans alone: whether both tell of the same turns at the same time, and
+// of the same way. Scans are asked in windows all over the log, so that it costs a share of what
+// mapping does.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
+#include "masked_mapper/sensor/time_span.hpp"
+
+namespace masked_mapper {
+
+/// A number that was estimated.
+struct Estimated {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+
+/// Each is present where it was seen, surely, to be other than it should be.
+struct WheelFault {
+  std::optional<Estimated> scan_clock_s;   ///< by which scans are stamped ahead of the wheels
+  std::optional<Estimated> travel_factor;  ///< true travel over what the wheels say
+  std::optional<Estimated> turn_factor;    ///< the same of turns
+  bool turns_useless = false;   ///< the turns that wheels tell are not those of the robot
+  bool travel_useless = false;  ///< nor is the way
+
+  bool IsNone() const {
+    return !scan_clock_s && !travel_factor && !turn_factor && !turns_useless && !travel_useless;
+  }
+};
+
+/// A stretch of the way as both tell it, from the robot's pose at its beginning.
+struct StretchPair {
+  Pose2 by_wheels;
+  Pose2 by_scans;
+  double way_sigma_m = 0.0;  ///< of the way by scans
+};
+
+struct WheelReport {
+  WheelFault fault;
+  std::vector<StretchPair> stretches;  ///< with the clock that was found
+};
+
+class WheelCheck {
+ public:
+  explicit WheelCheck(const MotionOptions& options);
+
+  /// In order of stamps; scans with beams.
+  void Observe(const OdometryReading& reading);
+  void Observe(const LaserScan& scan);
+
+  /// What wheels said in `left_out` does not count. No fault when too little was seen to tell.
+  WheelReport Find(const std::vector<TimeSpan>& left_out) const;
+
+  /// A stretch of the way by scans alone, of which they are sure.
+  struct Stretch {
+    TimeSpan span;
+    Pose2 by_scans;
+    double way_sigma_m = 0.0;
+  };
+  /// Where the wheels were; the heading is not wrapped.
+  struct WheelPose {
+    double stamp = 0.0;
+    Eigen::Vector2d position_in_odom = Eigen::Vector2d::Zero();
+    double heading_rad = 0.0;
+  };
+
+ private:
+  bool IsDue(const LaserScan& scan) const;
+  bool SeemsToTurn(const LaserScan& scan) const;
+  void EndStretch(double stamp);
+
+  MotionOptions options_;
+  std::vector<WheelPose> wheels_;
+  std::vector<Stretch> stretches_;
+  std::optional<MotionEstimator> scans_;  ///< of the present window
+  double window_begin_ = 0.0;             ///< s
+  double stretch_begin_ = 0.0;            ///< s
+  Pose2 T_window_stretch_;
+  double last_matched_ = 0.0;  ///< s
+  std::vector<float> last_ranges_;
+  std::uint64_t observed_ = 0;
+  std::uint64_t matched_ = 0;
+  int matched_in_window_ = 0;
+};
+
+}  // namespace masked_mapper

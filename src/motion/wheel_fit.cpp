@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "wheel_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/median.hpp"
+
+namespace masked_mapper {
+namespace {
+
+using Stretch = WheelCheck::Stretch;
+using WheelPose = WheelCheck::WheelPose;
+
+constexpr double kMostAhead = 8.0;   // s, of the clocks in question
+constexpr double kClockStep = 0.02;  // s
+// Less is what drivers and buses take, and what matching forgives: 0.2 s are 9 degrees where a
+// robot turns at 45 degrees a second.
+constexpr double kLeastAhead = 0.2;     // s
+constexpr double kApart = 1.0;          // s between clocks that are not the same
+constexpr double kTurnSigma = 2.0;      // deg by which honest wheels and scans differ in a stretch
+constexpr double kMostResidual = 15.0;  // deg; a greater one says no more than this
+constexpr double kLongestGap = 2.0;     // s without wheels, across which nothing is read
+constexpr double kLeastTurning = 2.5;   // rad of turning by scans below which nothing is said
+constexpr std::size_t kFewest = 12;     // stretches, the same
+constexpr double kTurns = 4.0;          // deg of a stretch by scans that make it a turn
+constexpr double kStraight = 8.0;       // deg up to which a stretch tells of the way
+constexpr double kWay = 0.2;            // m of a stretch that tells of the way
+constexpr double kSureOfWay = 0.1;      // of the way, sigma
+// Smaller faults are part of the noise that wheels are given. In turns real wheels also lag behind
+// the scans, and seem by up to a fifth to tell of too much or too little.
+constexpr double kLeastFault = 0.1;
+constexpr double kLeastTurnFault = 0.25;
+constexpr double kSure = 4.0;      // sigmas
+constexpr double kFitting = 0.25;  // of the squares of the turns may be left where wheels tell them
+constexpr double kMirrored = -0.3;  // of turns: the scanner hangs (mount_check.hpp)
+constexpr double kDead = 0.05;      // of the way is told by wheels that tell nothing
+constexpr double kUseless = 0.6;    // at the best clock: the wheels tell of other turns
+
+/// Where the wheels were at any stamp.
+class Wheels {
+ public:
+  explicit Wheels(const std::vector<WheelPose>& poses) : poses_(poses) {}
+
+  std::optional<WheelPose> At(double stamp) const {
+    const auto after =
+        std::lower_bound(poses_.begin(), poses_.end(), stamp,
+                         [](const WheelPose& pose, double value) { return pose.stamp < value; });
+    if (after == poses_.end()) return std::nullopt;
+    if (after->stamp == stamp) return *after;
+    if (after == poses_.begin()) return std::nullopt;
+    const WheelPose& before = *(after - 1);
+    const double between = after->stamp - before.stamp;
+    if (between > kLongestGap) return std::nullopt;
+    const double fraction = (stamp - before.stamp) / between;
+    return WheelPose{
+        stamp,
+        before.position_in_odom + fraction * (after->position_in_odom - before.position_in_odom),
+        before.heading_rad + fraction * (after->heading_rad - before.heading_rad)};
+  }
+
+ private:
+  const std::vector<WheelPose>& poses_;
+};
+
+double Way(const Pose2& motion) { return std::hypot(motion.x, motion.y); }
+
+std::vector<StretchPair> Paired(const std::vector<Stretch>& stretches, const Wheels& wheels,
+                                double ahead_s) {
+  std::vector<StretchPair> pairs;
+  for (const Stretch& stretch : stretches) {
+    const std::optional<WheelPose> a = wheels.At(stretch.span.start - ahead_s);
+    const std::optional<WheelPose> b = wheels.At(stretch.span.end - ahead_s);
+    if (!a || !b) continue;
+    Pose2 by_wheels = Between({a->position_in_odom.x(), a->position_in_odom.y(), a->heading_rad},
+                              {b->position_in_odom.x(), b->position_in_odom.y(), 0.0});
+    by_wheels.theta = b->heading_rad - a->heading_rad;
+    pairs.push_back({by_wheels, stretch.by_scans, stretch.way_sigma_m});
+  }
+  return pairs;
+}
+
+double Bounded(double residual) {
+  const double most = DegToRad(kMostResidual);
+  return std::min(residual * residual, most * most);
+}
+
+/// Turns by scans as a factor times those by wheels.
+struct TurnFit {
+  double factor = 1.0;
+  double left = 0.0;     // rad^2, mean bounded square of what the fit leaves
+  double without = 0.0;  // rad^2, the same if wheels told of no turn at all
+  double as_told = 0.0;  // rad^2, the same with a factor of 1
+};
+
+TurnFit FitTurns(const std::vector<StretchPair>& pairs) {
+  TurnFit fit;
+  // Weights of bounded squares, from a factor of one on.
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    double products = 0.0;
+    double squares = 0.0;
+    for (const StretchPair& pair : pairs) {
+      const double residual = pair.by_scans.theta - fit.factor * pair.by_wheels.theta;
+      const double ratio = residual / DegToRad(kMostResidual);
+      const double weight = 1.0 / (1.0 + ratio * ratio);
+      products += weight * pair.by_scans.theta * pair.by_wheels.theta;
+      squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
+    }
+    if (!(squares > 1e-9)) break;
+    fit.factor = products / squares;
+  }
+  for (const StretchPair& pair : pairs) {
+    fit.left += Bounded(pair.by_scans.theta - fit.factor * pair.by_wheels.theta);
+    fit.without += Bounded(pair.by_scans.theta);
+    fit.as_told += Bounded(pair.by_scans.theta - pair.by_wheels.theta);
+  }
+  const double count = std::max<double>(1.0, static_cast<double>(pairs.size()));
+  fit.left /= count;
+  fit.without /= count;
+  fit.as_told /= count;
+  return fit;
+}
+
+double Turning(const std::vector<StretchPair>& pairs) {
+  double turning = 0.0;
+  for (const StretchPair& pair : pairs) {
+    if (std::abs(pair.by_scans.theta) >= DegToRad(kTurns)) turning += std::abs(pair.by_scans.theta);
+  }
+  return turning;
+}
+
+/// The clock at which turns by wheels leave least of those by scans.
+std::optional<Estimated> FindClock(const std::vector<Stretch>& stretches, const Wheels& wheels) {
+  const std::vector<StretchPair> as_stamped = Paired(stretches, wheels, 0.0);
+  const double at_zero = FitTurns(as_stamped).left;
+  // Nothing is left that another clock could explain.
+  const double noise = DegToRad(kTurnSigma) * DegToRad(kTurnSigma);
+  if (!as_stamped.empty() && at_zero < noise) return std::nullopt;
+  Estimated best{0.0, 0.0};
+  double least = at_zero;
+  std::size_t count = as_stamped.size();
+  const int steps = static_cast<int>(kMostAhead / kClockStep);
+  std::vector<double> left(static_cast<std::size_t>(2 * steps + 1), at_zero);
+  for (int i = -steps; i <= steps; ++i) {
+    const std::vector<StretchPair> pairs = Paired(stretches, wheels, kClockStep * i);
+    if (pairs.size() < kFewest || 2 * pairs.size() < stretches.size()) continue;
+    const TurnFit fit = FitTurns(pairs);
+    left[static_cast<std::size_t>(i + steps)] = fit.left;
+    if (fit.factor <= 0.0 || fit.left >= least) continue;
+    if (fit.left > kFitting * fit.without) continue;
+    least = fit.left;
+    best.value = kClockStep * i;
+    count = pairs.size();
+  }
+  if (std::abs(best.value) < kLeastAhead || Turning(as_stamped) < kLeastTurning)
+    return std::nullopt;
+  // So much better that chance is out of the question: what is left at zero is no noise of theirs.
+  if (at_zero < 3.0 * least + noise) return std::nullopt;
+  // A robot that does the same again and again fits itself at several clocks.
+  for (int i = -steps; i <= steps; ++i) {
+    const bool is_apart = std::abs(kClockStep * i - best.value) > kApart;
+    if (is_apart && left[static_cast<std::size_t>(i + steps)] < 2.0 * least + noise) {
+      return std::nullopt;
+    }
+  }
+  // The curvature of the sum of squares about its minimum.
+  const auto at = static_cast<std::size_t>(std::lround(best.value / kClockStep) + steps);
+  if (at > 4 && at + 5 < left.size()) {
+    const double width = 5.0 * kClockStep;
+    const double curvature =
+        (left[at - 5] + left[at + 5] - 2.0 * least) / (width * width) * static_cast<double>(count);
+    if (curvature > 0.0) best.sigma = std::sqrt(2.0 * std::max(least, 1e-6) / curvature);
+  }
+  return best;
+}
+
+/// The middle of what wheels tell of each stretch, over what scans do; a dead wheel makes it 0.
+Estimated Middle(const std::vector<double>& ratios) {
+  Estimated middle;
+  middle.value = Median(ratios);
+  std::vector<double> deviations;
+  deviations.reserve(ratios.size());
+  for (const double ratio : ratios) deviations.push_back(std::abs(ratio - middle.value));
+  // Of a median, from the median deviation.
+  middle.sigma = 1.25 * 1.48 * Median(deviations) / std::sqrt(static_cast<double>(ratios.size()));
+  return middle;
+}
+
+/// A factor where it is surely other than one by more than the wheels' noise.
+std::optional<Estimated> IfSurely(const Estimated& factor, double least_fault) {
+  const double off = std::abs(factor.value - 1.0);
+  if (off <= least_fault || off <= kSure * factor.sigma) return std::nullopt;
+  return factor;
+}
+
+/// Of turns, beginning with what is nearly right. All stretches have a say: wheels lag behind
+/// scans, and those in which scans turn most are those in which wheels have not yet.
+Estimated FineFactor(const std::vector<StretchPair>& pairs, double factor) {
+  Estimated fine{factor, 0.0};
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    double products = 0.0;
+    double squares = 0.0;
+    double residuals = 0.0;
+    for (const StretchPair& pair : pairs) {
+      const double residual = pair.by_scans.theta - fine.value * pair.by_wheels.theta;
+      const double ratio = residual / DegToRad(kTurnSigma);
+      const double weight = 1.0 / (1.0 + ratio * ratio);
+      products += weight * pair.by_scans.theta * pair.by_wheels.theta;
+      squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
+      residuals +=
+          weight * weight * residual * residual * pair.by_wheels.theta * pair.by_wheels.theta;
+    }
+    if (!(squares > 1e-9)) break;
+    fine = {products / squares, std::sqrt(residuals) / squares};
+  }
+  return fine;
+}
+
+void JudgeTurns(const std::vector<StretchPair>& pairs, WheelFault* fault) {
+  if (pairs.size() < kFewest || Turning(pairs) < kLeastTurning) return;
+  const TurnFit fit = FitTurns(pairs);
+  const double noise = DegToRad(kTurnSigma) * DegToRad(kTurnSigma);
+  if (fit.left > std::max(kUseless * fit.without, 4.0 * noise) && fit.as_told >= fit.left) {
+    fault->turns_useless = fit.factor > kMirrored;
+    return;
+  }
+  if (fit.factor <= 0.0 || fit.left > kFitting * fit.without) return;
+  fault->turn_factor = IfSurely(FineFactor(pairs, fit.factor), kLeastTurnFault);
+}
+
+void JudgeWay(const std::vector<StretchPair>& pairs, WheelFault* fault) {
+  std::vector<double> ratios;
+  for (const StretchPair& pair : pairs) {
+    if (std::abs(pair.by_scans.theta) > DegToRad(kStraight) || Way(pair.by_scans) < kWay) continue;
+    if (pair.way_sigma_m > kSureOfWay * Way(pair.by_scans)) continue;
+    ratios.push_back(Way(pair.by_wheels) / Way(pair.by_scans));
+  }
+  if (ratios.size() < kFewest) return;
+  const Estimated middle = Middle(ratios);
+  const double spread = middle.sigma * std::sqrt(static_cast<double>(ratios.size()));
+  if (middle.value < kDead || spread > kUseless * middle.value) {
+    fault->travel_useless = true;
+    return;
+  }
+  fault->travel_factor =
+      IfSurely({1.0 / middle.value, middle.sigma / (middle.value * middle.value)}, kLeastFault);
+}
+
+}  // namespace
+
+WheelReport Compare(const std::vector<Stretch>& stretches,
+                    const std::vector<WheelPose>& wheel_poses) {
+  WheelReport report;
+  const Wheels wheels(wheel_poses);
+  report.fault.scan_clock_s = FindClock(stretches, wheels);
+  const double ahead_s = report.fault.scan_clock_s ? report.fault.scan_clock_s->value : 0.0;
+  report.stretches = Paired(stretches, wheels, ahead_s);
+  JudgeTurns(report.stretches, &report.fault);
+  JudgeWay(report.stretches, &report.fault);
+  return report;
+}
+
+}  // namespace masked_mapper
