@@ -11,6 +11,7 @@
 #include "map_info.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/log_summary.hpp"
+#include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "option_flags.hpp"
 #include "saved_map_path.hpp"
@@ -187,7 +188,9 @@ int RunInfo(const InfoArguments& arguments) {
     return 0;
   }
   LogSource source(arguments.log, options.mapping.log);
-  const LogSummary summary = Summarise(source);
+  LogSummary summary = Summarise(source);
+  // What a map would find out of the sensors before it is begun.
+  if (summary.statistics.scans > 0) summary.findings = SurveyLog(source, options.mapping).findings;
   (arguments.json ? PrintJson : PrintText)(arguments.log, summary);
   return 0;
 }
