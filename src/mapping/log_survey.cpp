@@ -50,7 +50,8 @@ class Surveyor {
         standstill_(options.motion),
         wheels_(options.motion),
         unbroken_(options.motion, !mending.left_out.empty()),
-        asks_wheels_(options.motion.source != MotionSource::kScans) {
+        asks_wheels_(options.motion.source == MotionSource::kAuto ||
+                     options.motion.source == MotionSource::kFused) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
   }
 
@@ -58,10 +59,8 @@ class Surveyor {
     unbroken_.Follow(observation, [&](const Observation& followed) { floors_.Observe(followed); });
     if (const auto* reading = std::get_if<OdometryReading>(&observation)) {
       NoteWay(*reading);
-      if (asks_wheels_) {
-        standstill_.Observe(*reading);
-        wheels_.Observe(*reading);
-      }
+      if (asks_wheels_) standstill_.Observe(*reading);
+      wheels_.Observe(*reading);
     }
     if (const auto* scan = std::get_if<LaserScan>(&observation)) ObserveScan(*scan);
   }
@@ -104,10 +103,8 @@ class Surveyor {
       T_robot_laser_ = scan.T_robot_laser;
     }
     log_.end = scan.stamp;
-    if (asks_wheels_) {
-      standstill_.Observe(scan);
-      wheels_.Observe(scan);
-    }
+    if (asks_wheels_) standstill_.Observe(scan);
+    wheels_.Observe(scan);
     if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
     stamp_before_ = scan.stamp;
     if (!scan.T_odom_robot) return;
@@ -137,7 +134,7 @@ class Surveyor {
   StandstillCheck standstill_;
   WheelCheck wheels_;
   UnbrokenWay unbroken_;
-  bool asks_wheels_;
+  bool asks_wheels_;  ///< not where the user settled whom to believe
   Pose2 T_robot_laser_;
   TimeSpan log_;                        ///< from the first scan to the last
   std::optional<double> stamp_before_;  ///< of the scan before, as all below
