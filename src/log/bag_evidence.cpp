@@ -151,11 +151,19 @@ const ClockEvidence& BagEvidence::ClockOf(std::size_t stream) const {
   return stream < scanners_.size() ? scan_clocks_[stream].at(FrameOf(stream)) : clocks_[stream];
 }
 
-/// Parent and child of the link above a frame that odometry moves: the one of that name, else the
-/// lowest that travels.
+/// Parent and child of the link above a frame that odometry moves: the one that the user names,
+/// else the one of that name, else the lowest that travels.
 std::optional<std::pair<std::string, std::string>> BagEvidence::OdometryLink(
     const std::string& frame) const {
   const std::vector<std::string> chain = frames_.Ancestors(frame);
+  if (const std::string& given = options_.odom_frame; !given.empty()) {
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      if (chain[i] == given || LastPartOfFrame(chain[i]) == given) {
+        return std::make_pair(chain[i], chain[i - 1]);
+      }
+    }
+    return std::nullopt;
+  }
   for (std::size_t i = 1; i < chain.size(); ++i) {
     if (LastPartOfFrame(chain[i]) == "odom") return std::make_pair(chain[i], chain[i - 1]);
   }
@@ -165,6 +173,17 @@ std::optional<std::pair<std::string, std::string>> BagEvidence::OdometryLink(
     return std::make_pair(chain[i], chain[i - 1]);
   }
   return std::nullopt;
+}
+
+std::string BagEvidence::MissingOdometryFrame() const {
+  const std::string frame = FrameOf(0);
+  if (options_.odom_frame.empty() || topics_.has_odometry_topic || OdometryLink(frame)) return "";
+  std::string above;
+  for (const std::string& ancestor : frames_.Ancestors(frame)) {
+    if (ancestor != frame) above += (above.empty() ? "" : ", ") + ancestor;
+  }
+  return "log.odom_frame: tf has no frame `" + options_.odom_frame + "` above `" + frame +
+         "`; it has " + (above.empty() ? "none" : above);
 }
 
 std::string BagEvidence::RobotFrame(const std::string& scan_frame, BagPlan* plan) const {

@@ -35,6 +35,10 @@ class BagEvidence {
   /// Whether all has been seen that a plan needs.
   bool IsEnough() const;
 
+  /// What to tell a user who named a frame of odometry that is not there; empty: it is, or none was
+  /// named.
+  std::string MissingOdometryFrame() const;
+
   BagPlan Conclude() const;
   /// What of the plan is other than the messages claim.
   std::vector<SensorFinding> Findings(const BagPlan& plan) const;

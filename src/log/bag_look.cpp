@@ -52,6 +52,8 @@ BagPlan LookAtBag(const std::string& path, const LogOptions& options, const BagP
     throw InputError(path + ": log.scan_topic: `" + topics.topics[*silent].name +
                      "` holds no scan that can be read");
   }
+  const std::string missing = evidence.MissingOdometryFrame();
+  if (!missing.empty()) throw InputError(path + ": " + missing);
   return evidence.Conclude();
 }
 

@@ -54,7 +54,9 @@ class TopicChoice {
       plan.topics.push_back({name, kinds_.at(name), plan.scanners++, {}});
     }
     if (plan.scanners == 0 && problems_.empty()) return plan;
-    AddOne({TopicKind::kOdometry}, "odometry", "log.odometry_topic", options.odometry_topic, &plan);
+    const bool by_tf = !options.odom_frame.empty() && options.odometry_topic.empty();
+    AddOne({TopicKind::kOdometry}, "odometry", "log.odometry_topic",
+           by_tf ? "none" : options.odometry_topic, &plan);
     plan.has_odometry_topic = plan.topics.size() > plan.scanners;
     AddOne({TopicKind::kImu}, "IMU", "log.imu_topic", options.imu_topic, &plan);
     AddOne({TopicKind::kPressure}, "pressure", "log.pressure_topic", options.pressure_topic, &plan);

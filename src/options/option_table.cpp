@@ -118,6 +118,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "of ROS bags with several; a,b: merged into one scanner"},
       {"log.odometry_topic", &o.mapping.log.odometry_topic, 0, 0,
        "of ROS bags with several; none: not read"},
+      {"log.odom_frame", &o.mapping.log.odom_frame, 0, 0,
+       "of ROS bags: odometry is tf below it; empty: found"},
       {"log.imu_topic", &o.mapping.log.imu_topic, 0, 0, "of ROS bags with several; none: not read"},
       {"log.pressure_topic", &o.mapping.log.pressure_topic, 0, 0,
        "of ROS bags with several; none: not read"},

@@ -140,9 +140,9 @@ inline Read ReadSource(LogSource& source) {
   return read;
 }
 
-inline Read ReadBag(const std::string& bytes) {
+inline Read ReadBag(const std::string& bytes, const LogOptions& options = {}) {
   const TemporaryFile file(".bag", bytes);
-  LogSource source(file.path(), {});
+  LogSource source(file.path(), options);
   return ReadSource(source);
 }
 

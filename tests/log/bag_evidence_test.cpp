@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "log/bag_drive.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::bag_drive {
 namespace {
@@ -34,6 +35,23 @@ TEST(BagEvidenceTest, OdometryIsFoundInTfByWhatMoves) {
   ExpectTheDrive(ReadBag(drive.Whole()));
   drive.odometry_frame = "map";
   EXPECT_FALSE(ReadBag(drive.Whole()).scans.front().T_odom_robot) << "put right by a map";
+}
+
+TEST(BagEvidenceTest, TheFrameOfOdometryMayBeNamed) {
+  Drive drive;
+  drive.odometry_frame = "map";
+  LogOptions options;
+  options.odom_frame = "map";
+  ExpectTheDrive(ReadBag(drive.Whole(), options));
+  options.odom_frame = "odom";
+  try {
+    ReadBag(drive.Whole(), options);
+    FAIL() << "there is no such frame";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no frame `odom` above `"), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("map"), std::string::npos) << error.what();
+  }
 }
 
 TEST(BagEvidenceTest, AMountIsTakenFromWhereverItStands) {

@@ -25,7 +25,8 @@ struct LogOptions {
   // Of ROS bags. Empty: the only topic of its type; `none`: not to be read.
   std::string scan_topic;      ///< several, separated by commas, are merged into one virtual scan
   std::string odometry_topic;  ///< without any: tf from odom to the robot
-  std::string imu_topic;       ///< for the vertical acceleration
+  std::string odom_frame;  ///< of tf, which is then read for odometry; empty: found by what moves
+  std::string imu_topic;   ///< for the vertical acceleration
   std::string pressure_topic;
   bool strongest_echo = false;  ///< of MultiEchoLaserScan; false: the first
 };
