@@ -101,7 +101,9 @@ UncertainPose2 MotionEstimator::StepWithoutWheels(double stamp) const {
     step.mean = {ratio * last_step_.mean.x, ratio * last_step_.mean.y,
                  ratio * last_step_.mean.theta};
   }
-  const double sigma_m = options_.wheelless.sigma_speed_m_per_s * elapsed;
+  const double sigma_m = std::min(options_.wheelless.sigma_speed_m_per_s,
+                                  options_.wheelless.sigma_acceleration_m_per_s2 * elapsed) *
+                         elapsed;
   const double sigma_rad = DegToRad(options_.wheelless.sigma_turn_deg_per_s) * elapsed;
   step.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
   return step;

@@ -16,7 +16,10 @@ namespace masked_mapper {
 
 /// What a robot may do between two scans when no wheels tell.
 struct WheellessOptions {
-  double sigma_speed_m_per_s = 0.4;    ///< about the speed of the step before
+  double sigma_speed_m_per_s = 0.4;  ///< about the speed of the step before, in the long run
+  /// By which it changes from one step to the next. Where walls are blank along the way (a flight
+  /// of stairs), this holds the way against what little seems to be seen of it.
+  double sigma_acceleration_m_per_s2 = 1.0;
   double sigma_turn_deg_per_s = 40.0;  ///< about the turn of the step before
 };
 
