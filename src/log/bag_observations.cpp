@@ -161,6 +161,9 @@ LaserScan BagObservations::Convert(RosLaserScan ros_scan, double stamp, std::siz
   const double sense = mount.upside_down != options_.upside_down ? -1.0 : 1.0;
   scan.first_angle = sense * ros_scan.angle_min;
   scan.angle_step = sense * ros_scan.angle_increment;
+  // Of several scanners' beams merged into one scan, each has a time of its own.
+  const bool has_times = plan_.scanners == 1 && std::isfinite(ros_scan.time_increment);
+  scan.beam_time = has_times ? ros_scan.time_increment : 0.0;
   const bool own_limit = plan_.no_return == 0.0F && IsRangeLimit(ros_scan.range_max);
   scan.max_range = static_cast<float>(own_limit ? ros_scan.range_max : plan_.max_range);
   const float no_return = plan_.no_return > 0.0F ? plan_.no_return : scan.max_range;

@@ -89,6 +89,7 @@ class RosLogWriter final : public LogSink {
     ros_scan.header = {scan.stamp, kLaserFrame};
     ros_scan.angle_min = scan.first_angle;
     ros_scan.angle_increment = scan.angle_step;
+    ros_scan.time_increment = scan.beam_time;
     ros_scan.range_max = scan.max_range;
     ros_scan.ranges = scan.ranges;
     Put("/scan", TopicKind::kScan, scan.stamp, WriteLaserScan(ros_scan, bag_->Encoding()));

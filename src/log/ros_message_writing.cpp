@@ -136,8 +136,9 @@ std::string WriteLaserScan(const RosLaserScan& scan, MessageEncoding encoding) {
   return Written(encoding, [&scan](auto* output) {
     output->Header(scan.header);
     const double steps = static_cast<double>(scan.ranges.empty() ? 0 : scan.ranges.size() - 1);
-    for (const double value : {scan.angle_min, scan.angle_min + steps * scan.angle_increment,
-                               scan.angle_increment, 0.0, 0.0, scan.range_min, scan.range_max}) {
+    for (const double value :
+         {scan.angle_min, scan.angle_min + steps * scan.angle_increment, scan.angle_increment,
+          scan.time_increment, 0.0, scan.range_min, scan.range_max}) {
       output->Number(static_cast<float>(value));
     }
     output->Number(static_cast<std::uint32_t>(scan.ranges.size()));

@@ -61,7 +61,8 @@ RosLaserScan ScanBeforeRanges(Fields* fields) {
   scan.angle_min = AngleAsMeant(fields->template Number<float>());
   fields->template Number<float>();  // angle_max: the count and the increment say it
   scan.angle_increment = AngleAsMeant(fields->template Number<float>());
-  fields->template Skip<float>(2);  // time_increment, scan_time
+  scan.time_increment = fields->template Number<float>();
+  fields->template Skip<float>(1);  // scan_time
   scan.range_min = fields->template Number<float>();
   scan.range_max = fields->template Number<float>();
   return scan;

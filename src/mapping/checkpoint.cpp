@@ -83,9 +83,9 @@ void Serialize(Archive& archive, OdometryMending& mending) {
 template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
   archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
-          survey.median_turn_rad, survey.median_period_s, survey.floors.levels,
-          survey.floors.intervals, survey.floor_source, survey.findings, survey.mending,
-          survey.reconsidered, survey.warnings);
+          survey.median_turn_rad, survey.median_period_s, survey.sweep_s_per_rad,
+          survey.floors.levels, survey.floors.intervals, survey.floor_source, survey.findings,
+          survey.mending, survey.reconsidered, survey.warnings);
 }
 
 namespace {
@@ -246,7 +246,8 @@ void MaskedMapper::RememberScan(const LaserScan& scan) {
   }
   if (pose.in_transit) return;
   if (before.in_transit || before.floor != pose.floor) mask_->Restart();
-  mask_->Observe({scan, pose.T_odom_robot});
+  const std::size_t place = remembered_scans_ - 1;
+  mask_->Observe({StraightenedAt(scan, place, pose.T_odom_robot), pose.T_odom_robot});
   if (made_scan_node) mask_->OnNode();
 }
 

@@ -11,6 +11,8 @@
 #include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/motion/mount_check.hpp"
 #include "masked_mapper/motion/standstill_check.hpp"
+#include "masked_mapper/motion/sweep_check.hpp"
+#include "masked_mapper/motion/sweep_straightener.hpp"
 #include "masked_mapper/motion/wheel_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
@@ -49,6 +51,7 @@ class Surveyor {
       : floors_(options.floors),
         standstill_(options.motion),
         wheels_(options.motion),
+        sweep_(options.motion),
         unbroken_(options.motion, !mending.left_out.empty()),
         asks_wheels_(options.motion.source == MotionSource::kAuto ||
                      options.motion.source == MotionSource::kFused) {
@@ -90,6 +93,7 @@ class Surveyor {
     } else if (survey_.has_odometry) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
     }
+    SettleSweep();
     survey_.median_travel_m = Median(std::move(travels_));
     survey_.median_turn_rad = Median(std::move(turns_));
     survey_.median_period_s = Median(std::move(periods_));
@@ -103,8 +107,8 @@ class Surveyor {
       T_robot_laser_ = scan.T_robot_laser;
     }
     log_.end = scan.stamp;
-    if (asks_wheels_) standstill_.Observe(scan);
-    wheels_.Observe(scan);
+    sweep_.Observe(scan);
+    AskOfWheels(scan.beam_time == 0.0 ? scan : Timed(scan, sweep_.Stated()));
     if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
     stamp_before_ = scan.stamp;
     if (!scan.T_odom_robot) return;
@@ -120,6 +124,17 @@ class Surveyor {
     T_odom_before_ = scan.T_odom_robot;
   }
 
+  void AskOfWheels(const LaserScan& scan) {
+    if (asks_wheels_) standstill_.Observe(scan);
+    wheels_.Observe(scan);
+  }
+
+  void SettleSweep() {
+    SweepCheck::Verdict sweep = sweep_.Find();
+    survey_.sweep_s_per_rad = sweep.seconds_per_rad;
+    if (sweep.finding) survey_.findings.push_back(std::move(*sweep.finding));
+  }
+
   void NoteWay(const OdometryReading& reading) {
     const double step = T_odom_noted_ ? Distance(*T_odom_noted_, reading.T_odom_robot) : 0.0;
     survey_.has_odometry = true;
@@ -133,6 +148,7 @@ class Surveyor {
   FloorTracker floors_;
   StandstillCheck standstill_;
   WheelCheck wheels_;
+  SweepCheck sweep_;
   UnbrokenWay unbroken_;
   bool asks_wheels_;  ///< not where the user settled whom to believe
   Pose2 T_robot_laser_;
@@ -175,7 +191,8 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
     if (!labels.empty()) CheckClock(options.floors.file, labels, log->Statistics());
     survey.reconsidered = reconsidered;
     survey.mending = wheels.mending;
-    survey.findings = source.Findings();
+    const std::vector<SensorFinding> of_the_source = source.Findings();
+    survey.findings.insert(survey.findings.begin(), of_the_source.begin(), of_the_source.end());
     survey.findings.insert(survey.findings.end(), wheels.findings.begin(), wheels.findings.end());
     AddSilences(surveyor.silences(), wheels.mending, &survey.findings);
     return survey;

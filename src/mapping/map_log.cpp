@@ -14,6 +14,7 @@
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -145,7 +146,8 @@ class LogDrive {
   void Begin() {
     if (mapper_) spent_ += mapper_->result().seconds;  // what is driven again costs twice
     mapper_.emplace(mask_, settled_, survey_.floors);
-    log_ = source_.Read();
+    log_ = ReadStraightened(
+        source_, {survey_.sweep_s_per_rad, settled_.motion.source != MotionSource::kScans});
     observations_ = scans_ = 0;
   }
 

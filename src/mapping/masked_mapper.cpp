@@ -44,12 +44,23 @@ void MaskedMapper::Observe(const Observation& observation) {
   }
 }
 
-void MaskedMapper::ObserveScan(const LaserScan& scan) {
-  const FloorInterval& interval = floors_.At(scan.stamp);
+// Where wheels did not straighten a scan, the step that it made does, which is better known now
+// than when it was matched. `pose`: its place in the trajectory.
+LaserScan MaskedMapper::StraightenedAt(const LaserScan& scan, std::size_t pose,
+                                       const Pose2& T_odom_robot) const {
+  if (scan.beam_time == 0.0 || pose == 0) return StraightenedBySteps(scan, Pose2{}, 0.0);
+  const TrajectoryPose& before = result_.trajectory[pose - 1];
+  return StraightenedBySteps(scan, Between(before.T_odom_robot, T_odom_robot),
+                             scan.stamp - before.stamp);
+}
+
+void MaskedMapper::ObserveScan(const LaserScan& bent) {
+  const FloorInterval& interval = floors_.At(bent.stamp);
   {
     const StageTimer timer(result_.seconds.motion);
-    motion_.Observe(scan, interval.in_transit != in_transit_);
+    motion_.Observe(bent, interval.in_transit != in_transit_);
   }
+  const LaserScan scan = StraightenedAt(bent, result_.trajectory.size(), motion_.T_odom_robot());
   const auto floor = static_cast<FloorId>(interval.level);
   const bool is_first = result_.graph.nodes().empty();
   if (is_first) {

@@ -4,8 +4,18 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
+
+#include "masked_mapper/sensor/straightened_scan.hpp"
 
 namespace masked_mapper {
+
+LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double seconds) {
+  constexpr double kLongest = 2.0;  // s, of a step that tells how the robot goes on
+  const bool is_known = seconds > 0.0 && seconds <= kLongest;
+  return Straightened(std::move(scan),
+                      is_known ? SteadyMotion(T_before_now, seconds) : SteadyMotion(Pose2{}, 1.0));
+}
 
 MotionEstimator::MotionEstimator(const MotionOptions& options)
     : options_(options),
@@ -62,6 +72,11 @@ bool MotionEstimator::HearsWheels(const LaserScan& scan) {
 }
 
 void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
+  if (scan.beam_time != 0.0) {
+    // Of the motion during the sweep the step before is the nearest that is known.
+    Observe(StraightenedBySteps(scan, last_step_.mean, last_step_s_), must_match);
+    return;
+  }
   const bool has_wheels = HearsWheels(scan);
   UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
   wheels_.StartNode();

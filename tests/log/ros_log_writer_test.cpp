@@ -24,6 +24,7 @@ LaserScan ScanAt(double stamp) {
   scan.first_angle = DegToRad(-90.0);
   scan.angle_step = DegToRad(1.0);
   scan.max_range = 30.0F;
+  scan.beam_time = 1e-4;
   for (int beam = 0; beam < 181; ++beam) {
     scan.ranges.push_back(static_cast<float>(2.0 + 0.01 * beam + 0.001 * std::fmod(stamp, 7.0)));
   }
@@ -107,6 +108,7 @@ TEST_P(RosLogWriterTest, WhatWasWrittenIsRead) {
     EXPECT_EQ(scan->first_angle, expected.first_angle);
     EXPECT_EQ(scan->angle_step, expected.angle_step);
     EXPECT_EQ(scan->max_range, 30.0F);
+    EXPECT_NEAR(scan->beam_time, 1e-4, 1e-9);
     EXPECT_LT(Distance(scan->T_robot_laser, expected.T_robot_laser), 1e-12) << "m";
     ASSERT_TRUE(scan->T_odom_robot);
     EXPECT_LT(Distance(*scan->T_odom_robot, *expected.T_odom_robot), 1e-6) << "m";

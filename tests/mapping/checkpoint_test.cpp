@@ -106,6 +106,16 @@ TEST(Checkpoint, ABrokenDriveEndsWithTheSameMap) {
   }
 }
 
+TEST(Checkpoint, ABrokenDriveOfBentScansEndsWithTheSameMap) {
+  RingDrive drive(1.2, 0.3);
+  for (LaserScan& scan : drive.scans) scan.beam_time = 1e-4;
+  const std::size_t n = drive.scans.size();
+  const MappingOptions options = OptionsFor(MotionSource::kScans);
+  const BuildingMap whole = Unbroken(drive, "openings", options, {});
+  EXPECT_TRUE(SameMap(whole, Broken(drive, "openings", options, {}, {n / 5, n / 2})));
+  for (const KeptScan& kept : whole.kept_scans) EXPECT_EQ(kept.scan.beam_time, 0.0);
+}
+
 TEST(Checkpoint, BeforeTheFirstScanIsACheckpointToo) {
   const RingDrive drive(0.3, 0.3);
   const MappingOptions options = OptionsFor(MotionSource::kFused);
@@ -149,6 +159,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   survey.has_odometry = true;
   survey.odometry_moves = true;
   survey.median_period_s = 0.2;
+  survey.sweep_s_per_rad = -0.03;
   survey.floors.levels.push_back({"up", 3.5, 0.1, true, false});
   survey.floors.intervals.push_back({12.5, 1, true});
   survey.floor_source = FloorSource::kPressure;
@@ -158,6 +169,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   EXPECT_TRUE(back.has_odometry);
   EXPECT_TRUE(back.odometry_moves);
   EXPECT_EQ(back.median_period_s, 0.2);
+  EXPECT_EQ(back.sweep_s_per_rad, -0.03);
   ASSERT_EQ(back.floors.levels.size(), 2U);
   EXPECT_EQ(back.floors.levels[1].label, "up");
   EXPECT_FALSE(back.floors.levels[1].identity_known);

@@ -24,6 +24,7 @@ struct RosLaserScan {
   RosHeader header;
   double angle_min = 0.0;        ///< rad
   double angle_increment = 0.0;  ///< rad
+  double time_increment = 0.0;   ///< s, between beams, as stated
   double range_min = 0.0;        ///< m
   double range_max = 0.0;        ///< m
   std::vector<float> ranges;     ///< m

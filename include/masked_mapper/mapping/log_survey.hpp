@@ -21,6 +21,7 @@ struct LogSurvey {
   double median_travel_m = 0.0;  ///< by wheels, from scan to scan, of those that moved
   double median_turn_rad = 0.0;
   double median_period_s = 0.0;
+  double sweep_s_per_rad = 0.0;  ///< of the scanner, signed as SweepTiming has it; 0: not bent
   FloorTimeline floors;
   FloorSource floor_source = FloorSource::kNone;  ///< what the floors were found by
   std::vector<SensorFinding> findings;

@@ -45,7 +45,9 @@ class MaskedMapper {
  private:
   template <class Archive>
   void SerializeState(Archive& archive);
-  void ObserveScan(const LaserScan& scan);
+  void ObserveScan(const LaserScan& bent);
+  LaserScan StraightenedAt(const LaserScan& scan, std::size_t pose,
+                           const Pose2& T_odom_robot) const;
   void ChangeFloor(const FloorInterval& interval, double stamp);
   NodeId AddNode(double stamp, FloorId floor, EdgeKind kind, KeptScanId scan = -1);
   KeptScanId Keep(const LaserScan& scan);

@@ -34,11 +34,15 @@ struct MotionOptions {
   WheellessOptions wheelless;
 };
 
+/// A scan straightened for a robot that goes on as in the step before it.
+LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double seconds);
+
 class MotionEstimator {
  public:
   explicit MotionEstimator(const MotionOptions& options);
 
   /// Observations in order of stamps. The path moves at scans; readings between them gather.
+  /// A scan that is still bent (`beam_time`) is straightened by the step before.
   /// `must_match`: the scene is about to be left, so that no correction may wait.
   /// A scan before which the wheels were silent moved as scans say: silence is no rest.
   void Observe(const OdometryReading& reading);

@@ -5,6 +5,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -30,11 +31,23 @@ struct LaserScan {
   float max_range = 0.0F;             ///< m, beyond which nothing is returned
   std::vector<float> ranges;          ///< m; finite > 0, or kNoReturn, or kInvalidRange
   std::optional<Pose2> T_odom_robot;  ///< odometry at the scan's stamp, where the log has it
+  /// s, from one beam to the next in time, the first at the stamp. Negative: the last beam is at
+  /// the stamp, and they follow backwards. 0: all are, or were put where they would be then.
+  double beam_time = 0.0;
 
   std::size_t size() const { return ranges.size(); }
   /// Direction of a beam in the laser frame, rad, not wrapped.
   double Angle(std::size_t beam) const {
     return first_angle + angle_step * static_cast<double>(beam);
+  }
+  /// When a beam was measured, s after the stamp.
+  double TimeOf(std::size_t beam) const {
+    const std::size_t before = beam_time < 0.0 ? size() - 1 - beam : beam;
+    return std::abs(beam_time) * static_cast<double>(before);
+  }
+  /// How long the beams took, s.
+  double SweepDuration() const {
+    return ranges.empty() ? 0.0 : TimeOf(beam_time < 0.0 ? 0 : size() - 1);
   }
   /// Whether the beams go all round, so that the last is the neighbour of the first.
   bool IsFullCircle() const;
