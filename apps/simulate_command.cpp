@@ -20,6 +20,8 @@
 namespace masked_mapper {
 namespace {
 
+constexpr double kUsualImuRate = 100.0;  // Hz
+
 struct SimulateArguments {
   std::string building;
   std::string log;
@@ -32,6 +34,7 @@ struct SimulateArguments {
   bool perfect = false;
   bool floor_labels = false;
   bool without_pressure = false;
+  bool with_imu = false;
   bool force = false;
   bool quiet = false;
 };
@@ -94,6 +97,7 @@ int RunSimulate(const SimulateArguments& arguments) {
   constexpr double kImuRate = 100.0;  // Hz
   if (arguments.with_imu) options.acceleration.rate = kImuRate;
   if (arguments.without_pressure) options.pressure.rate = 0.0;
+  if (arguments.with_imu) options.acceleration.rate = kUsualImuRate;
   const SimulationNoise noise = arguments.perfect ? SimulationNoise::None() : SimulationNoise{};
 
   CatchInterrupts();
@@ -164,6 +168,8 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
   command->add_flag("--floor-labels", arguments->floor_labels,
                     "write FLOOR lines, as an elevator's interface would");
   command->add_flag("--without-pressure", arguments->without_pressure, "no barometer");
+  command->add_flag("--with-imu", arguments->with_imu,
+                    "an accelerometer, too, of a cheap IMU: noise, bias, vibration while driving");
   command->add_flag("--force", arguments->force, "replace a log that was not simulated");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->footer(

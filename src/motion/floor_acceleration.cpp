@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "cab_ride.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "slope_heights.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -160,6 +162,23 @@ std::vector<FloorTransit> TransitsOf(const std::vector<VerticalSample>& samples,
   return transits;
 }
 
+/// Both in order; where a cab's ride was felt, it was no stairs.
+std::vector<FloorTransit> WithStairs(std::vector<FloorTransit> rides,
+                                     const std::vector<FloorTransit>& stairs) {
+  const std::size_t count = rides.size();
+  for (const FloorTransit& transit : stairs) {
+    const bool is_ride =
+        std::any_of(rides.begin(), rides.begin() + static_cast<std::ptrdiff_t>(count),
+                    [&](const FloorTransit& ride) {
+                      return ride.start <= transit.end && transit.start <= ride.end;
+                    });
+    if (!is_ride) rides.push_back(transit);
+  }
+  std::sort(rides.begin(), rides.end(),
+            [](const FloorTransit& a, const FloorTransit& b) { return a.start < b.start; });
+  return rides;
+}
+
 /// Gravity tells the unit: the factor that makes m/s^2 of the readings; 0: they are of no use.
 double ScaleOf(double gravity, std::vector<std::string>& warnings) {
   if (gravity > 0.9 && gravity < 1.1) {
@@ -224,7 +243,15 @@ AccelerationTrack::Rides AccelerationTrack::FindRides(const WheelTrack& track,
   for (const Spell& spell : spells) {
     samples.push_back({spell.stamp, scale * up.dot(spell.acceleration_in_robot)});
   }
+  std::vector<TiltSample> tilts;
+  for (const Spell& spell : spells)
+    tilts.push_back({spell.stamp, scale * spell.acceleration_in_robot});
+  const PressureHeights slopes = SlopeHeights(tilts, up, track);
   result.transits = TransitsOf(samples, track, options_);
+  if (!slopes.samples.empty()) {
+    result.transits = WithStairs(std::move(result.transits),
+                                 TransitsOfPressure(slopes, track, options_.stairs, storeys));
+  }
   const auto is_small = [&](const FloorTransit& transit) {
     return std::abs(*transit.climb) < LeastClimb(storeys) && std::isfinite(transit.start) &&
            std::isfinite(transit.end);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/simulation/acceleration.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace masked_mapper {
@@ -18,8 +19,11 @@ AccelerationSimulation::AccelerationSimulation(const AccelerationNoise& noise, s
 
 Eigen::Vector3d AccelerationSimulation::Measure(const RobotState& state) {
   constexpr double kGravity = 9.80665;  // m/s^2
-  Eigen::Vector3d measured(state.speed_change, state.speed * state.turn_rate,
-                           kGravity + state.vertical_acceleration);
+  // Wheels measure the way along the slope, so rise over way is the sine of the pitch.
+  const double sine = std::clamp(state.slope, -0.95, 0.95);
+  const double up = kGravity + state.vertical_acceleration;
+  Eigen::Vector3d measured(state.speed_change + up * sine, state.speed * state.turn_rate,
+                           up * std::sqrt(1.0 - sine * sine));
   measured += bias_;
   const double sigma = noise_.sigma + noise_.vibration * std::abs(state.speed);
   for (int axis = 0; axis < 3; ++axis) measured[axis] += sigma * random_.Normal();

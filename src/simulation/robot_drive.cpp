@@ -448,6 +448,7 @@ RobotState RobotDrive::At(double time) const {
   state.T_building_robot = Along(motion->T_building_robot, motion->curvature, distance);
   state.T_building_robot.theta = WrapAngle(state.T_building_robot.theta + spin);
   state.elevation = motion->elevation + motion->slope * distance;
+  state.slope = motion->slope;
   state.speed = motion->speed + motion->acceleration * t;
   state.speed_change = motion->acceleration;
   state.turn_rate =

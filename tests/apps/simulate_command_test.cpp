@@ -43,6 +43,16 @@ TEST(SimulateCommand, TheBarometerMayBeLeftOut) {
   EXPECT_FALSE(Contains(ReadText(log), "\nPRESSURE "));
 }
 
+TEST(SimulateCommand, AnAccelerometerMayBeAdded) {
+  const ScratchFolder folder;
+  const std::string log = folder / "office.log";
+  ASSERT_EQ(RunProgram({"simulate", "--building", "office", "-o", log, "--quiet"}).code, 0);
+  EXPECT_FALSE(Contains(ReadText(log), "\nACCEL "));
+  ASSERT_EQ(
+      RunProgram({"simulate", "--building", "office", "-o", log, "--quiet", "--with-imu"}).code, 0);
+  EXPECT_TRUE(Contains(ReadText(log), "\nACCEL "));
+}
+
 TEST(SimulateCommand, MistakesAreSaid) {
   const ScratchFolder folder;
   const std::string log = folder / "new.log";

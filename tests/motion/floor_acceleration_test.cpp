@@ -28,8 +28,9 @@ AccelerationTrack Feel(const SyntheticDrive& drive, const Accelerometer& sensor,
   std::size_t ride = 0;
   for (double t = 0.0; t < drive.Duration(); t += 1.0 / sensor.rate) {
     const double up = sensor.gravity + sensor.bias + drive.AccelerationAt(t, &ride);
-    const Eigen::Vector3d value(sensor.tilt * up + noise(random), noise(random),
-                                up + noise(random));
+    const double pitch = sensor.tilt + std::asin(drive.SlopeAt(t));
+    const Eigen::Vector3d value(std::sin(pitch) * up + noise(random), noise(random),
+                                std::cos(pitch) * up + noise(random));
     track.Observe({t, value / sensor.unit});
   }
   return track;
@@ -49,6 +50,27 @@ TEST(FloorAcceleration, KnowsTheFloorsByTwoPulses) {
     EXPECT_EQ(score.transits_missed, 0) << seed;
     EXPECT_EQ(score.cab_share, 1.0) << seed;
     EXPECT_LT(score.worst_elevation, 0.3) << "m, seed " << seed;
+  }
+}
+
+TEST(FloorAcceleration, StairsAreSeenByThePitchAndTheWheels) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SyntheticDrive drive({0.0, 3.4, 7.4}, 0, seed);
+    drive.Roam(100.0);
+    drive.TakeStairs(1);
+    drive.Roam(100.0);
+    drive.TakeElevator(2);
+    drive.Roam(100.0);
+    drive.TakeStairs(1);
+    drive.Roam(60.0);
+    const AccelerationTrack acceleration = Feel(drive, {}, seed);
+    const FloorScore score = ScoreFloors(Timeline(acceleration, TrackOf(drive)), drive);
+    EXPECT_EQ(score.levels, 3U) << seed;
+    EXPECT_EQ(score.transits_missed, 0) << seed;
+    EXPECT_GE(score.right_share, 0.99) << seed;
+    EXPECT_LT(score.worst_elevation, 0.3) << "m, seed " << seed;
+    // A phone that no wheels carry has no way along which it is pitched.
+    EXPECT_EQ(acceleration.FindRides({}, {}).transits.size(), 1U) << seed;
   }
 }
 

@@ -23,6 +23,7 @@ class SyntheticDrive {
     double height = 0.0;      ///< m
     std::size_t floor = 0;    ///< in transit: the floor left
     bool in_transit = false;  ///< the cab's door is not open, or on stairs
+    double slope = 0.0;       ///< m up per metre driven
   };
   struct Ride {
     double start = 0.0;  ///< s, of the motion up or down
@@ -116,6 +117,10 @@ class SyntheticDrive {
     const double fraction = stamp / kPeriod - static_cast<double>(index);
     return states_[index].height + fraction * (states_[index + 1].height - states_[index].height);
   }
+  double SlopeAt(double stamp) const {
+    const auto index = static_cast<std::size_t>(std::max(0.0, stamp / kPeriod));
+    return states_[std::min(index, states_.size() - 1)].slope;
+  }
   /// m/s^2 upwards, without gravity; `stamp` rises from call to call of one `ride` counter.
   double AccelerationAt(double stamp, std::size_t* ride) const {
     while (*ride + 1 < rides_.size() && rides_[*ride].end < stamp) ++*ride;
@@ -142,6 +147,7 @@ class SyntheticDrive {
     }
   }
   void Move(double duration, double speed, double turn_rate, double climb_rate = 0.0) {
+    state_.slope = speed > 0.0 ? climb_rate / speed : 0.0;
     Append(duration, [&](State& state, double step) {
       state.T_odom_robot = state.T_odom_robot * Pose2{speed * step, 0.0, turn_rate * step};
       state.height += climb_rate * step;

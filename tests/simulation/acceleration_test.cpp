@@ -25,5 +25,13 @@ TEST(Acceleration, FeelsCurvesAndBrakes) {
   EXPECT_NEAR(acceleration.Measure(state).y(), 0.3, 1e-12) << "m/s^2";
 }
 
+TEST(Acceleration, IsPitchedWithTheRobot) {
+  AccelerationSimulation acceleration(AccelerationNoise::None(), 1);
+  RobotState state;
+  state.slope = 0.6;
+  EXPECT_NEAR(acceleration.Measure(state).x(), 0.6 * 9.80665, 1e-12) << "m/s^2";
+  EXPECT_NEAR(acceleration.Measure(state).z(), 0.8 * 9.80665, 1e-12) << "m/s^2";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rides by vertical acceleration: a cab that carries a resting robot pushes it once and catches it
-// once. Between the two the cab moves, before and after it stands, so the integral may be held to
-// zero speed at both ends and what is left is the climb. Stairs and ramps are not seen.
+// Changes of floor by acceleration. A cab that carries a resting robot pushes it once and catches
+// it once. Between the two the cab moves, before and after it stands, so the integral may be held
+// to zero speed at both ends and what is left is the climb. On stairs and ramps the robot is
+// pitched while its wheels turn: the sine of the pitch, times their way, is the climb.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "masked_mapper/motion/floor_pressure.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
 #include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/observation.hpp"
@@ -22,6 +24,7 @@ struct FloorAccelerationOptions {
   double longest_ride_s = 300;  ///< s
   double cab_radius = 0.25;     ///< m within which a robot stays while it turns round in a cab
   double least_stay_s = 6.0;    ///< s that wheels rest for a ride and its doors at least
+  FloorPressureOptions stairs;  ///< how steps are found in what the pitch makes of heights
 };
 
 /// Vertical acceleration over the drive, thinned as it comes.

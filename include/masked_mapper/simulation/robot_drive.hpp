@@ -33,6 +33,7 @@ struct RobotState {
   double speed = 0.0;                  ///< m/s, forwards
   double turn_rate = 0.0;              ///< rad/s
   double speed_change = 0.0;           ///< m/s^2, forwards
+  double slope = 0.0;                  ///< m up per metre driven; stairs, else 0
   double vertical_acceleration = 0.0;  ///< m/s^2, upwards, without gravity
   std::size_t floor = 0;               ///< whose walls surround the robot
   bool in_transit = false;             ///< the cab's door is not fully open, or on stairs
