@@ -183,6 +183,17 @@ void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& databas
   }
 }
 
+void WriteTransits(const std::vector<TransitRecord>& transits, const Database& database) {
+  Statement insert(database, "INSERT INTO transits VALUES (?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < transits.size(); ++i) {
+    const TransitRecord& transit = transits[i];
+    std::string sensors;
+    for (const std::string& sensor : transit.by) sensors += (sensors.empty() ? "" : " ") + sensor;
+    insert.Bind(Id(i)).Bind(transit.t_out).Bind(transit.t_in).Bind(transit.height_m);
+    insert.Bind(transit.sigma_m).BindText(sensors).BindText(transit.open).Put();
+  }
+}
+
 void WriteDrives(const std::vector<Drive>& drives, const Database& database) {
   Statement insert(database, "INSERT INTO drives VALUES (?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < drives.size(); ++i) {
@@ -214,6 +225,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     WriteTrajectory(result.trajectory, database);
     WriteLogStamps(result, database);
     WriteScans(result.kept_scans, database);
+    WriteTransits(result.transits, database);
     WriteDrives(result.drives, database);
     Seal(database);
     transaction.Commit();

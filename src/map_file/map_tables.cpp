@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -34,6 +35,7 @@ class Reader {
     ReadTrajectory();
     ReadScans();
     LinkRows(version_, map_.result);
+    ReadTransits();
     ReadDrives();
     ReadLogStamps();
     return std::move(map_);
@@ -103,6 +105,21 @@ class Reader {
       }
       finding.consequence = findings.Text();
       map_.result.findings.push_back(std::move(finding));
+    }
+  }
+
+  void ReadTransits() {
+    Statement rows(database_, "SELECT * FROM transits ORDER BY id");
+    while (rows.Next()) {
+      TakeId(rows, map_.result.transits.size(), "transits");
+      TransitRecord transit;
+      for (double* number : {&transit.t_out, &transit.t_in, &transit.height_m, &transit.sigma_m}) {
+        *number = TakeFinite(rows, "transits");
+      }
+      std::istringstream sensors{std::string(rows.Text())};
+      for (std::string sensor; sensors >> sensor;) transit.by.push_back(sensor);
+      transit.open = rows.Text();
+      map_.result.transits.push_back(std::move(transit));
     }
   }
 

@@ -19,7 +19,7 @@ struct Table {
 
 // Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
 // are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
-constexpr std::array<Table, 15> kTables = {{
+constexpr std::array<Table, 16> kTables = {{
     {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
@@ -58,6 +58,9 @@ constexpr std::array<Table, 15> kTables = {{
     {"findings",
      "id INTEGER PRIMARY KEY, what TEXT NOT NULL, value ANY NOT NULL, sigma ANY NOT NULL,"
      " t_a ANY NOT NULL, t_b ANY NOT NULL, consequence TEXT NOT NULL"},
+    {"transits",
+     "id INTEGER PRIMARY KEY, t_out ANY NOT NULL, t_in ANY NOT NULL, height_m ANY NOT NULL,"
+     " sigma_m ANY NOT NULL, sensors TEXT NOT NULL, open TEXT NOT NULL"},
     {"drives",
      "id INTEGER PRIMARY KEY, log TEXT NOT NULL, first_pose INTEGER NOT NULL,"
      " first_node INTEGER NOT NULL REFERENCES nodes(id), stamp_offset ANY NOT NULL,"
@@ -100,6 +103,7 @@ std::vector<Table> TablesOf(std::int64_t version) {
     const std::string_view name = table.name;
     if (version <= 1 && name == "drives") continue;
     if (version <= 2 && (name == "log_stamps" || name == "findings")) continue;
+    if (version <= 3 && name == "transits") continue;
     if (version <= 1 && name == "floors") table.columns = kFloorsOfVersion1;
     if (version <= 2 && name == "nodes") table.columns = kNodesOfVersion2;
     if (version <= 2 && name == "edges") table.columns = kEdgesOfVersion2;
@@ -229,6 +233,7 @@ void Upgrade(Database& database, std::int64_t version) {
       if (table.name == name) database.Run(CreateStatement(table));
     }
   };
+  if (version <= 3) make("transits");
   if (version <= 2) {
     database.Run("ALTER TABLE edges ADD COLUMN closure INTEGER");
     make("log_stamps");

@@ -10,7 +10,7 @@
 namespace masked_mapper {
 
 constexpr std::int64_t kMapApplicationId = 0x4d6d6170;  // "Mmap"
-constexpr std::int64_t kMapVersion = 3;
+constexpr std::int64_t kMapVersion = 4;
 
 /// Makes the tables of the newest version in an empty database.
 void MakeTables(Database& database);

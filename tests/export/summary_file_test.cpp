@@ -58,7 +58,7 @@ TEST(SummaryFile, TransitsNameTheFloorsOfThePosesAround) {
   BuildingMap map = SampleMap();
   const double first = map.trajectory.front().stamp;
   const double last = map.trajectory.back().stamp;
-  map.transits.push_back({first, last, 3.8, 0.1, {"pressure", "acceleration"}});
+  map.transits.push_back({first, last, 3.8, 0.1, {"pressure", "acceleration"}, ""});
   const OccupancyGrid grid;
   const Json json = Written(Summarise(map, {"a.log", "always", {}}, {grid, grid}));
   ASSERT_EQ(json["transits"].size(), 1U);

@@ -170,6 +170,20 @@ TEST(MapFileReader, GivesBackDrives) {
   EXPECT_EQ(read.origin.identity, origin.identity);
 }
 
+TEST(MapFileReader, GivesBackChangesOfFloor) {
+  const TestFolder folder;
+  BuildingMap map = MapOfTwoDrives();
+  map.transits = {{10.5, 20.25, 3.5, 0.1, {"pressure", "acceleration"}, ""},
+                  {40.0, 60.0, -3.5, 4.9, {"lidar"}, "it fits in more than one way"}};
+  WriteMapFile({"one.log", "openings", {}}, map, folder / "a.mmap");
+  const SavedMap read = ReadMapFile(folder / "a.mmap");
+  ASSERT_EQ(read.result.transits.size(), 2U);
+  EXPECT_EQ(read.result.transits[0].t_in, 20.25);
+  EXPECT_EQ(read.result.transits[0].by, map.transits[0].by);
+  EXPECT_EQ(read.result.transits[1].sigma_m, 4.9);
+  EXPECT_EQ(read.result.transits[1].open, map.transits[1].open);
+}
+
 // A file that a program wrote which knew of version 1 alone.
 TEST(MapFileReader, UpgradesVersion1) {
   const fs::path file = fs::path(MASKED_MAPPER_SOURCE_DIR) / "tests/map_file/version1.mmap";
@@ -189,7 +203,7 @@ TEST(MapFileReader, UpgradesVersion1) {
   // What it is upgraded to is written as what it is.
   const TestFolder folder;
   WriteMapFile(map.origin, map.result, folder / "new.mmap");
-  EXPECT_EQ(Database(folder / "new.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 3);
+  EXPECT_EQ(Database(folder / "new.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 4);
   EXPECT_TRUE(SameMap(map.result, ReadMapFile(folder / "new.mmap").result));
   // The version is part of what is believed: neither passes for the other.
   for (const auto& [from, version] :
