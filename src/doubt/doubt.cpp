@@ -193,10 +193,32 @@ std::vector<Doubt> DoubtsOfPieces(const BuildingMap& map) {
   return doubts;
 }
 
+std::vector<Doubt> DoubtsOfFloors(const BuildingMap& map) {
+  std::vector<Doubt> doubts;
+  for (const TransitRecord& transit : map.transits) {
+    if (transit.open.empty()) continue;
+    const auto reached = std::find_if(
+        map.trajectory.begin(), map.trajectory.end(),
+        [&](const TrajectoryPose& pose) { return pose.stamp >= transit.t_in && !pose.in_transit; });
+    if (reached == map.trajectory.end()) continue;
+    Doubt doubt;
+    doubt.kind = DoubtKind::kFloor;
+    doubt.floor = reached->floor;
+    doubt.x = reached->T_world_robot.x;
+    doubt.y = reached->T_world_robot.y;
+    doubt.t_a = transit.t_out;
+    doubt.t_b = transit.t_in;
+    doubt.text = "the floor that was reached at " + FixedText(transit.t_in, 2) +
+                 " s may be one that was there before: no sensor tells, and " + transit.open;
+    doubts.push_back(doubt);
+  }
+  return doubts;
+}
+
 }  // namespace
 
 const char* Name(DoubtKind kind) {
-  constexpr std::array<const char*, 4> kNames = {"walls", "closure", "motion", "apart"};
+  constexpr std::array<const char*, 5> kNames = {"walls", "closure", "motion", "apart", "floor"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
@@ -206,6 +228,7 @@ std::vector<Doubt> FindDoubts(const BuildingMap& map) {
     if (const std::optional<Doubt> doubt = DoubtOf(map, edge)) doubts.push_back(*doubt);
   }
   for (const Doubt& doubt : DoubtsOfPieces(map)) doubts.push_back(doubt);
+  for (const Doubt& doubt : DoubtsOfFloors(map)) doubts.push_back(doubt);
   std::stable_sort(doubts.begin(), doubts.end(), [](const Doubt& one, const Doubt& other) {
     return std::make_pair(one.kind, one.t_a) < std::make_pair(other.kind, other.t_a);
   });

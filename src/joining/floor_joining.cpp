@@ -2,124 +2,29 @@
 #include "masked_mapper/joining/floor_joining.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
-
-#include "masked_mapper/loop_closure/submaps.hpp"
-#include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
 namespace {
 
-// A match of one node of the newer level, as what it says of the way from one level to the other.
-struct Shift {
-  NodeId node = 0;
-  Pose2 T_world_node;          ///< where motion puts the node
-  Pose2 T_world_matched_node;  ///< where the older level puts it
-};
-
-// The second shift, done to the first one's node, in the first one's words.
-bool Agree(const Shift& a, const Shift& b, const FloorJoinOptions& options) {
-  const Pose2 T_world_a = b.T_world_matched_node * Between(b.T_world_node, a.T_world_node);
-  return Distance(T_world_a, a.T_world_matched_node) <= options.agree_m &&
-         std::abs(WrapAngle(T_world_a.theta - a.T_world_matched_node.theta)) <=
-             DegToRad(options.agree_deg);
+/// Runs of items whose level is one of those asked for.
+template <class Items, class LevelOf>
+std::vector<IndexRange> RunsOf(const Items& items, const std::vector<bool>& is_asked,
+                               LevelOf level_of) {
+  std::vector<IndexRange> runs;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!is_asked[static_cast<std::size_t>(level_of(items[i]))]) continue;
+    if (runs.empty() || runs.back().end != i) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  return runs;
 }
 
-class LevelMatcher {
- public:
-  LevelMatcher(const BuildingMap& map, const FloorJoinOptions& options,
-               const LoopClosureOptions& closures)
-      : map_(map),
-        options_(options),
-        refine_(closures.refine),
-        matcher_(closures.matcher),
-        submaps_(closures.submaps, map) {}
-
-  struct Fit {
-    int offered = 0;   ///< nodes of the newer level with a neighbour on the older one
-    int agreeing = 0;  ///< of them, those of the largest group that is shifted alike
-  };
-
-  /// `older` may be several levels that are one floor.
-  Fit Match(FloorId newer, const std::vector<FloorId>& older) {
-    Fit fit;
-    std::vector<Shift> shifts;
-    for (const NodeId node : ScanNodesOn({newer})) {
-      const std::vector<NodeId> neighbours = Neighbours(node, older);
-      if (neighbours.empty()) continue;
-      ++fit.offered;
-      for (const NodeId neighbour : neighbours) {
-        const std::optional<Shift> shift = MatchPairOf(node, neighbour);
-        if (shift) shifts.push_back(*shift);
-      }
-    }
-    for (const Shift& candidate : shifts) {
-      std::vector<NodeId> nodes;
-      for (const Shift& other : shifts) {
-        if (Agree(candidate, other, options_)) nodes.push_back(other.node);
-      }
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      fit.agreeing = std::max(fit.agreeing, static_cast<int>(nodes.size()));
-    }
-    return fit;
-  }
-
- private:
-  const Node& At(NodeId node) const { return map_.graph.nodes()[static_cast<std::size_t>(node)]; }
-
-  std::vector<NodeId> ScanNodesOn(const std::vector<FloorId>& floors) const {
-    std::vector<NodeId> found;
-    const auto count = static_cast<NodeId>(map_.graph.nodes().size());
-    for (NodeId node = 0; node < count; ++node) {
-      if (At(node).HasScan() && std::count(floors.begin(), floors.end(), At(node).floor) > 0) {
-        found.push_back(node);
-      }
-    }
-    return found;
-  }
-
-  std::vector<NodeId> Neighbours(NodeId node, const std::vector<FloorId>& floors) const {
-    std::vector<std::pair<double, NodeId>> near;
-    for (const NodeId other : ScanNodesOn(floors)) {
-      const double distance = Distance(At(node).T_world_robot, At(other).T_world_robot);
-      if (distance <= options_.reach_m) near.emplace_back(distance, other);
-    }
-    std::sort(near.begin(), near.end());
-    constexpr std::size_t kMost = 2;
-    std::vector<NodeId> nearest;
-    for (std::size_t i = 0; i < std::min(kMost, near.size()); ++i)
-      nearest.push_back(near[i].second);
-    return nearest;
-  }
-
-  std::optional<Shift> MatchPairOf(NodeId node, NodeId neighbour) {
-    const ScanPoints::ConstPtr points_in_node = submaps_.PointsAt(node);
-    UncertainPose2 guess;
-    guess.mean = Between(At(neighbour).T_world_robot, At(node).T_world_robot);
-    const double sigma_m = options_.sigma_m;
-    const double sigma_rad = DegToRad(options_.sigma_deg);
-    guess.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
-    const MatchResult match =
-        matcher_.Match({{neighbour, submaps_.PointsAt(neighbour), points_in_node, guess}}).front();
-    if (match.outcome != MatchOutcome::kMatched) return std::nullopt;
-    Pose2 T_neighbour_node = match.T_reference_query.mean;
-    if (refine_) {
-      const std::optional<SubmapMatch> refined =
-          submaps_.Refine(neighbour, *points_in_node, match.T_reference_query);
-      if (!refined) return std::nullopt;
-      T_neighbour_node = refined->T_node_robot.mean;
-    }
-    return Shift{node, At(node).T_world_robot, At(neighbour).T_world_robot * T_neighbour_node};
-  }
-
-  const BuildingMap& map_;
-  const FloorJoinOptions& options_;
-  bool refine_;
-  JointMatcher matcher_;
-  Submaps submaps_;
-};
+MapPart PartOn(const BuildingMap& map, const std::vector<bool>& levels) {
+  return {RunsOf(map.graph.nodes(), levels, [](const Node& node) { return node.floor; }),
+          RunsOf(map.trajectory, levels, [](const TrajectoryPose& pose) { return pose.floor; })};
+}
 
 // The level that the robot came from when it first reached `level`.
 std::optional<std::size_t> ReachedFrom(const FloorTimeline& floors, std::size_t level) {
@@ -127,6 +32,26 @@ std::optional<std::size_t> ReachedFrom(const FloorTimeline& floors, std::size_t 
     if (floors.intervals[i].level == level) return floors.intervals[i - 1].level;
   }
   return std::nullopt;
+}
+
+/// Of a level against all before it.
+PieceQuestion QuestionOf(const BuildingMap& map, std::size_t level,
+                         const std::vector<std::size_t>& is_level, PiecePrior ride) {
+  std::vector<bool> is_older(map.graph.floors().size(), false);
+  std::vector<bool> is_newer(map.graph.floors().size(), false);
+  PieceQuestion question;
+  for (std::size_t i = 0; i < is_older.size(); ++i) {
+    is_older[i] = i < level;
+    is_newer[i] = i == level;
+    question.is_floor.push_back(static_cast<FloorId>(i < level ? is_level[i] : i));
+  }
+  question.older = PartOn(map, is_older);
+  question.newer = PartOn(map, is_newer);
+  if (!question.newer.nodes.empty()) {
+    ride.T_world_anchor = map.graph.nodes()[question.newer.nodes.front().begin].T_world_robot;
+  }
+  question.prior = ride;
+  return question;
 }
 
 // Levels that are another are taken out, and the rest count on without a gap.
@@ -154,35 +79,46 @@ bool HasUnknownFloors(const FloorTimeline& floors) {
                      [](const FloorLevel& level) { return !level.identity_known; });
 }
 
+DriveJoinOptions FloorJoinOptions::PlacesOfOneDrive() {
+  DriveJoinOptions places;
+  places.place_spacing_m = 2.0;
+  places.min_places = 3;
+  places.min_share = 0.5;
+  places.min_spread_m = 4.0;
+  return places;
+}
+
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
-                        const FloorJoinOptions& options, const LoopClosureOptions& closures) {
+                        const FloorJoinOptions& options, const MatcherOptions& matcher) {
   const std::vector<std::string> names = FloorNames(floors.levels);
-  std::vector<std::size_t> is_level(floors.levels.size());
+  std::vector<std::size_t> is_level;
   FloorJoining joining;
-  LevelMatcher matcher(map, options, closures);
+  FloorTimeline told = floors;
   for (std::size_t level = 0; level < floors.levels.size(); ++level) {
-    is_level[level] = level;
-    if (floors.levels[level].identity_known) continue;
+    is_level.push_back(level);
     const std::optional<std::size_t> from = ReachedFrom(floors, level);
-    for (std::size_t older = 0; older < level; ++older) {
-      if (is_level[older] != older || (from && is_level[*from] == older)) continue;
-      std::vector<FloorId> parts;
-      for (std::size_t part = older; part < level; ++part) {
-        if (is_level[part] == older) parts.push_back(static_cast<FloorId>(part));
-      }
-      const LevelMatcher::Fit fit = matcher.Match(static_cast<FloorId>(level), parts);
-      if (fit.agreeing < options.min_places || fit.agreeing < options.min_share * fit.offered) {
+    if (floors.levels[level].identity_known || !from) continue;
+    const bool only_the_one_left =
+        std::all_of(is_level.begin(), is_level.end() - 1,
+                    [&](std::size_t older) { return older == is_level[*from]; });
+    if (only_the_one_left) continue;
+    const PieceSearchResult found =
+        FindPiece(map, QuestionOf(map, level, is_level, options.ride), options.places, matcher);
+    std::string reason = found.reason;
+    if (found.placement) {
+      const auto older = static_cast<std::size_t>(found.placement->older_floor_of.begin()->second);
+      if (older != is_level[*from]) {
+        is_level[level] = older;
+        joining.any_joined = true;
+        joining.notes.push_back("floor " + names[older] + " was met again: " + reason +
+                                " it, and no sensor tells floors apart");
         continue;
       }
-      is_level[level] = older;
-      joining.any_joined = true;
-      joining.notes.push_back(
-          "floor " + names[older] + " was met again: " + std::to_string(fit.agreeing) + " of " +
-          std::to_string(fit.offered) + " places fit it, and no sensor tells floors apart");
-      break;
+      reason = "it looks like floor " + names[older] + ", which was left for it";
     }
+    told.levels[level].open = reason;
   }
-  joining.floors = Merged(floors, is_level);
+  joining.floors = Merged(told, is_level);
   return joining;
 }
 

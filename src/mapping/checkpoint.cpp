@@ -55,7 +55,7 @@ void Serialize(Archive& archive, Node& node) {
 template <class Archive>
 void Serialize(Archive& archive, FloorLevel& level) {
   archive(level.label, level.elevation, level.elevation_sigma, level.elevation_measured,
-          level.identity_known);
+          level.identity_known, level.open);
 }
 
 template <class Archive>

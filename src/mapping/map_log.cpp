@@ -35,6 +35,16 @@ void WarnOfTheLog(const std::string& path, const LogStatistics& log, BuildingMap
   }
 }
 
+// Asked once, where the level was first reached.
+std::string OpenQuestion(const FloorTimeline& floors, const FloorChange& change) {
+  const auto first = std::find_if(floors.intervals.begin(), floors.intervals.end(),
+                                  [&](const FloorInterval& interval) {
+                                    return !interval.in_transit && interval.level == change.to;
+                                  });
+  const bool is_first = first != floors.intervals.end() && first->start == change.t_in;
+  return is_first ? floors.levels[change.to].open : "";
+}
+
 std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStatistics& log) {
   constexpr std::pair<FloorSource, const char*> kNames[] = {
       {FloorSource::kLabels, "labels"},
@@ -47,7 +57,8 @@ std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStat
                           std::min(change.t_in, log.last_stamp),
                           change.height_m,
                           change.sigma_m,
-                          {}};
+                          {},
+                          OpenQuestion(floors, change)};
     for (const auto& [source, name] : kNames) {
       if (change.by.Has(source)) transit.by.emplace_back(name);
     }
@@ -106,13 +117,15 @@ class LogDrive {
   BuildingMap Map() {
     progress_.Stage("mapping");
     DriveThrough();
-    if (HasUnknownFloors(survey_.floors) && FloorsWereJoined()) {
+    BuildingMap result = mapper_->Finish();
+    if (HasUnknownFloors(survey_.floors) && FloorsWereJoined(result)) {
       progress_.Stage("mapping, floors joined");
+      spent_ += result.seconds;  // what is driven again costs twice
       Begin();
       if (checkpoints_ != nullptr) checkpoints_->StartOver();
       DriveThrough();
+      result = mapper_->Finish();
     }
-    BuildingMap result = mapper_->Finish();
     result.log = log_->Statistics();
     result.seconds += spent_;
     result.seconds.read += read_seconds_;
@@ -121,7 +134,7 @@ class LogDrive {
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
-    TieVisits(mapper_->options().closures, result);
+    TieVisits(mapper_->options().closures, settled_.floor_joins, result);
     result.findings = survey_.findings;
     for (const SensorFinding& finding : survey_.findings) {
       result.warnings.push_back(path_ + ": " + TextOf(finding));
@@ -144,7 +157,6 @@ class LogDrive {
   }
 
   void Begin() {
-    if (mapper_) spent_ += mapper_->result().seconds;  // what is driven again costs twice
     mapper_.emplace(mask_, settled_, survey_.floors);
     log_ = ReadStraightened(
         source_, {survey_.sweep_s_per_rad, settled_.motion.source != MotionSource::kScans});
@@ -153,11 +165,12 @@ class LogDrive {
 
   // With a floor met again as one level, its visits are matched with each other like any others;
   // that takes another drive through the log.
-  bool FloorsWereJoined() {
-    const FloorJoining joining = JoinFloors(mapper_->result(), survey_.floors, settled_.floor_joins,
-                                            mapper_->options().closures);
-    if (!joining.any_joined) return false;
+  bool FloorsWereJoined(const BuildingMap& map) {
+    const StageTimer timer(spent_.matching);
+    const FloorJoining joining =
+        JoinFloors(map, survey_.floors, settled_.floor_joins, mapper_->options().closures.matcher);
     survey_.floors = joining.floors;
+    if (!joining.any_joined) return false;
     survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());
     return true;
   }

@@ -161,7 +161,7 @@ void LidarTrack::ForgetFarWay() {
   }
 }
 
-bool LidarTrack::IsRide() const {  // DBG
+bool LidarTrack::IsRide() const {
   const Pose2& T_odom_cab = closure_->T_odom_robot;
   const Eigen::Vector2d cab_in_odom = T_odom_cab.Translation();
   if (CameThroughWall(way_in_, cab_in_odom, options_.door_distance_m) ||

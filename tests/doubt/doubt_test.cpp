@@ -56,6 +56,19 @@ TEST(Doubt, ASecondVisitThatHangsBesideTheFirstIsListedAtItsPlace) {
   }
 }
 
+TEST(Doubt, AFloorThatMayBeAnOlderOneIsListedWhereItWasReached) {
+  BuildingMap map = RightMap();
+  const TrajectoryPose& reached = map.trajectory[map.trajectory.size() / 2];
+  map.transits = {{reached.stamp - 20.0, reached.stamp, 3.5, 3.5, {"lidar"}, "it looks like two"},
+                  {reached.stamp - 90.0, reached.stamp - 70.0, 3.5, 0.1, {"pressure"}, ""}};
+  const std::vector<Doubt> doubts = FindDoubts(map);
+  ASSERT_EQ(doubts.size(), 1U);
+  EXPECT_EQ(doubts[0].kind, DoubtKind::kFloor);
+  EXPECT_EQ(doubts[0].x, reached.T_world_robot.x);
+  EXPECT_EQ(doubts[0].t_b, reached.stamp);
+  EXPECT_NE(doubts[0].text.find("it looks like two"), std::string::npos);
+}
+
 TEST(Doubt, AClosureByHandThatContradictsTheRestIsListed) {
   BuildingMap map = RightMap();
   Closure wrong;

@@ -18,7 +18,7 @@ class EditsTest : public testing::Test {
     MappingOptions options;
     options.motion.source = MotionSource::kOdometry;
     options.closures.refine = false;
-    floors_.levels.push_back({"up", 3.0, 0.1, true, true});
+    floors_.levels.push_back({"up", 3.0, 0.1, true, true, ""});
     MaskedMapper mapper("never", options, floors_);
     for (const LaserScan& scan : drive_.scans) mapper.Observe(scan);
     map_ = mapper.Finish();

@@ -18,8 +18,8 @@ FloorTimeline ThreeVisits(const RingDrive& drive) {
         .stamp;
   };
   FloorTimeline floors;
-  floors.levels.push_back({"", 3.5, 3.5, false, false});
-  floors.levels.push_back({"", 7.0, 3.5, false, false});
+  floors.levels.push_back({"", 3.5, 3.5, false, false, ""});
+  floors.levels.push_back({"", 7.0, 3.5, false, false, ""});
   floors.intervals.push_back({stamp(0.44), 0, true});
   floors.intervals.push_back({stamp(0.445), 1, true});
   floors.intervals.push_back({stamp(0.45), 1, false});
@@ -83,8 +83,8 @@ TEST(JoinFloors, KnownFloorsAndEmptyMapsAreLeftAlone) {
   EXPECT_FALSE(HasUnknownFloors(one));
   EXPECT_FALSE(JoinFloors({}, one, {}, {}).any_joined);
   FloorTimeline unknown;
-  unknown.levels.push_back({"", 3.5, 3.5, false, false});
-  unknown.levels.push_back({"", 7.0, 3.5, false, false});
+  unknown.levels.push_back({"", 3.5, 3.5, false, false, ""});
+  unknown.levels.push_back({"", 7.0, 3.5, false, false, ""});
   const FloorJoining joining = JoinFloors({}, unknown, {}, {});
   EXPECT_FALSE(joining.any_joined);
   EXPECT_EQ(joining.floors.levels.size(), 3u);

@@ -19,7 +19,7 @@ BuildingMap OpenMapOfThreeVisits(const RingDrive& drive) {
         .stamp;
   };
   FloorTimeline floors;
-  floors.levels.push_back({"", 3.5, 0.1, true, true});
+  floors.levels.push_back({"", 3.5, 0.1, true, true, ""});
   floors.intervals.push_back({stamp(0.44), 0, true});
   floors.intervals.push_back({stamp(0.445), 1, true});
   floors.intervals.push_back({stamp(0.45), 1, false});
@@ -48,7 +48,7 @@ TEST(TieVisits, WhatStayedOpenIsTiedAndRight) {
   const RingDrive drive(2.4, 0.2);
   BuildingMap map = OpenMapOfThreeVisits(drive);
   ASSERT_EQ(Closed(map), 0U);
-  TieVisits({}, map);
+  TieVisits({}, {}, map);
   EXPECT_GT(Closed(map), 0U);
   for (std::size_t i = 0; i < drive.truth.size(); i += 20) {
     EXPECT_LT(Distance(drive.truth[i], map.trajectory[i].T_world_robot), 0.5) << "m, scan " << i;
@@ -64,13 +64,13 @@ TEST(TieVisits, OneVisitStaysAsItIs) {
   BuildingMap map = mapper.Finish();
   map.drives.emplace_back();
   const std::size_t closures = map.closures.size();
-  TieVisits({}, map);
+  TieVisits({}, {}, map);
   EXPECT_EQ(map.closures.size(), closures);
 }
 
 TEST(TieVisits, NothingIsNothing) {
   BuildingMap map;
-  TieVisits({}, map);
+  TieVisits({}, {}, map);
   EXPECT_TRUE(map.closures.empty());
 }
 

@@ -20,7 +20,7 @@ FloorTimeline TwoFloors(const RingDrive& drive) {
         .stamp;
   };
   FloorTimeline floors;
-  floors.levels.push_back({"up", 3.0, 0.1, true, true});
+  floors.levels.push_back({"up", 3.0, 0.1, true, true, ""});
   floors.intervals.push_back({stamp(0.40), 0, true});
   floors.intervals.push_back({stamp(0.42), 1, true});
   floors.intervals.push_back({stamp(0.45), 1, false});
@@ -160,7 +160,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   survey.odometry_moves = true;
   survey.median_period_s = 0.2;
   survey.sweep_s_per_rad = -0.03;
-  survey.floors.levels.push_back({"up", 3.5, 0.1, true, false});
+  survey.floors.levels.push_back({"up", 3.5, 0.1, true, false, "it fits two"});
   survey.floors.intervals.push_back({12.5, 1, true});
   survey.floor_source = FloorSource::kPressure;
   survey.warnings = {"a", ""};
@@ -173,6 +173,7 @@ TEST(Checkpoint, ASurveyComesBack) {
   ASSERT_EQ(back.floors.levels.size(), 2U);
   EXPECT_EQ(back.floors.levels[1].label, "up");
   EXPECT_FALSE(back.floors.levels[1].identity_known);
+  EXPECT_EQ(back.floors.levels[1].open, "it fits two");
   EXPECT_EQ(back.floors.intervals[1].start, 12.5);
   EXPECT_EQ(back.floor_source, FloorSource::kPressure);
   EXPECT_EQ(back.warnings, survey.warnings);

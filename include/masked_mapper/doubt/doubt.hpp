@@ -17,6 +17,7 @@ enum class DoubtKind {
   kClosure,  ///< a closure that the rest of the map contradicts
   kMotion,   ///< a way between two nodes that the rest of the map contradicts
   kApart,    ///< a drive that nothing ties to the others
+  kFloor,    ///< a floor that may be another one, for all that is known
 };
 
 struct Doubt {
@@ -31,7 +32,7 @@ struct Doubt {
   std::string edit;     ///< the line of edits.yaml that would mend it; empty: none is known
 };
 
-/// "walls", "closure", "motion", "apart".
+/// "walls", "closure", "motion", "apart", "floor".
 const char* Name(DoubtKind kind);
 
 /// In order of kinds, then of stamps.

@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Floors met again that nothing but the map can tell. A robot without pressure, labels or
 // acceleration notices that it changed floors, not to which: every ride opens a new level. Where
-// the scans of such a level fit an older one, node by node and all shifted alike, the two are one
-// floor. Choices of ours; the paper's robot knows its floor.
+// what was seen on such a level fits an older one place by place, all shifted alike, the two are
+// one floor, unless it fits another as well. Choices of ours; the paper's robot knows its floor.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/joining/piece_search.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
 
 /// When two visits of floors that no sensor tells apart are one floor.
 struct FloorJoinOptions {
-  double reach_m = 4.0;    ///< from a node to its neighbours on the older floor
-  double sigma_m = 1.0;    ///< of where motion through the rides puts them
-  double sigma_deg = 4.0;  ///< and of the heading
-  double agree_m = 0.3;    ///< between places that are shifted alike
-  double agree_deg = 2.0;
-  int min_places = 3;      ///< that agree
-  double min_share = 0.6;  ///< of the places that have a neighbour
+  DriveJoinOptions places = PlacesOfOneDrive();
+  PiecePrior ride;  ///< how far a ride may throw the robot's pose off
+
+  /// Of places where motion has put the level already, fewer and nearer ones suffice, but most of
+  /// them have to fit: a floor is seen whole, where drives share a part of their ways.
+  static DriveJoinOptions PlacesOfOneDrive();
 };
 
 struct FloorJoining {
-  FloorTimeline floors;            ///< every level's identity known, as far as it ever will be
-  bool any_joined = false;         ///< else `floors` differs in nothing else
+  FloorTimeline floors;  ///< as far as it ever will be known; levels left open say why
+  bool any_joined = false;
   std::vector<std::string> notes;  ///< one line for each level that was joined
 };
 
 /// Whether a level waits to be told apart.
 bool HasUnknownFloors(const FloorTimeline& floors);
 
-/// Offers the scan nodes of each level of unknown identity to those of older levels, other than the
-/// one it was reached from, within `options.reach_m` of where motion puts them.
-/// `map` was made with `floors`, by `closures`.
+/// Looks for each level of unknown identity on the older ones, near where motion puts it. It is
+/// none that it was reached from; where it fits that one, too, the storeys are of one plan, and
+/// fits say nothing. `map` was made with `floors`.
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
-                        const FloorJoinOptions& options, const LoopClosureOptions& closures);
+                        const FloorJoinOptions& options, const MatcherOptions& matcher);
 
 }  // namespace masked_mapper

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/scan_matching/floor_search.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
@@ -49,6 +50,30 @@ struct PieceSearchResult {
   std::optional<PiecePlacement> placement;
   std::string reason;  ///< for people: why there is one, or none
 };
+
+/// Stretches of the way driven.
+struct MapPart {
+  std::vector<IndexRange> nodes;
+  std::vector<IndexRange> poses;
+};
+
+/// The newer part lies already where motion puts it, as far off as this.
+struct PiecePrior {
+  Pose2 T_world_anchor;     ///< where it is known best
+  double within_m = 2.0;    ///< there
+  double within_deg = 8.0;  ///< of the heading
+};
+
+/// Two parts of one map. The newer one's floors are none of the older one's.
+struct PieceQuestion {
+  MapPart older;
+  MapPart newer;
+  std::vector<FloorId> is_floor;  ///< what each floor counts as, where some are one; empty: itself
+  std::optional<PiecePrior> prior;  ///< without it: anywhere
+};
+
+PieceSearchResult FindPiece(const BuildingMap& map, const PieceQuestion& question,
+                            const DriveJoinOptions& options, const MatcherOptions& matcher);
 
 /// Drives of the pieces, by place in `map.drives`; pieces have no floor in common. Floors whose
 /// labels were given are one only when they are called alike; others when their heights over each

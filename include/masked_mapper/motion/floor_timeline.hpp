@@ -39,6 +39,7 @@ struct FloorLevel {
   /// False: a change of floor was noticed, but not to which. The level may be one of the others,
   /// which only the map itself can tell.
   bool identity_known = true;
+  std::string open;  ///< why the map could not tell either; empty: it could, or was not asked
 };
 
 /// From `start` to the next interval's start the robot is on `level`, or between levels.
