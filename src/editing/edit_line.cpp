@@ -44,6 +44,34 @@ std::vector<double> EditLine::Numbers(const std::string& field, std::size_t coun
   return numbers;
 }
 
+std::vector<Eigen::Vector2d> EditLine::Points(const std::string& field) {
+  const YamlTree& tree = Take(field);
+  std::vector<Eigen::Vector2d> points;
+  for (const YamlTree& item : tree.list) {
+    if (item.kind != YamlTree::Kind::kList || item.list.size() != 2) break;
+    points.emplace_back(NumberOf(item.list[0], field), NumberOf(item.list[1], field));
+  }
+  if (tree.kind != YamlTree::Kind::kList || points.size() != tree.list.size()) {
+    Fail(what_ + ": " + field + " must be a list of points [x, y]");
+  }
+  return points;
+}
+
+EditLine::FloorPoint EditLine::PointOnFloor(const std::string& field) {
+  const YamlTree& tree = Take(field);
+  if (tree.kind != YamlTree::Kind::kList || tree.list.size() != 3 ||
+      tree.list.front().kind != YamlTree::Kind::kValue) {
+    Fail(what_ + ": " + field + " must be [floor, x, y]");
+  }
+  return {tree.list[0].value, {NumberOf(tree.list[1], field), NumberOf(tree.list[2], field)}};
+}
+
+std::vector<std::string> EditLine::FieldNames() const {
+  std::vector<std::string> names;
+  for (const auto& [field, tree] : fields_) names.push_back(field);
+  return names;
+}
+
 void EditLine::RequireAllTaken() const {
   for (const auto& [field, tree] : fields_) {
     if (std::find(taken_.begin(), taken_.end(), field) == taken_.end()) {

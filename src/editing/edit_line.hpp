@@ -2,6 +2,7 @@
 // One line of a file of edits: its name, and its fields, each of which must be asked for.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,6 +24,15 @@ class EditLine {
   std::string Word(const std::string& field);
   double Number(const std::string& field) { return NumberOf(Take(field), field); }
   std::vector<double> Numbers(const std::string& field, std::size_t count);
+  /// A list of lists of two numbers, metres.
+  std::vector<Eigen::Vector2d> Points(const std::string& field);
+  struct FloorPoint {
+    std::string label;
+    Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  };
+  /// [label, x, y]
+  FloorPoint PointOnFloor(const std::string& field);
+  std::vector<std::string> FieldNames() const;
   /// Fails for a field that nobody asked for.
   void RequireAllTaken() const;
 

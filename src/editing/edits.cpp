@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotation_edits.hpp"
 #include "edit_line.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/map/trajectory.hpp"
@@ -38,7 +39,8 @@ std::string Short(double value) {
 
 class Editor {
  public:
-  Editor(const LoopClosureOptions& options, BuildingMap& map) : options_(options), map_(map) {}
+  Editor(const LoopClosureOptions& options, BuildingMap& map)
+      : options_(options), map_(map), annotations_(map) {}
 
   void Apply(EditLine& edit) {
     const std::vector<std::pair<std::string, std::function<std::string(EditLine&)>>> edits = {
@@ -47,6 +49,12 @@ class Editor {
         {"name_floor", [this](EditLine& line) { return NameFloor(line); }},
         {"pin_elevation", [this](EditLine& line) { return PinElevation(line); }},
         {"same_floor", [this](EditLine& line) { return SameFloor(line); }},
+        {"places", [this](EditLine& line) { return annotations_.NamePlaces(line, map_); }},
+        {"keep_out",
+         [this](EditLine& line) { return annotations_.Draw(AreaKind::kKeepOut, line, map_); }},
+        {"erase",
+         [this](EditLine& line) { return annotations_.Draw(AreaKind::kErased, line, map_); }},
+        {"anchor", [this](EditLine& line) { return annotations_.Anchor(line, map_); }},
     };
     std::vector<std::string> names;
     for (const auto& [name, apply] : edits) {
@@ -60,9 +68,12 @@ class Editor {
   }
 
   void Solve() {
-    if (!pulled_) return;
-    Optimize(options_.optimizer.solver, map_.graph);
-    BendTrajectory(map_.graph, map_.trajectory);
+    if (pulled_) {
+      Optimize(options_.optimizer.solver, map_.graph);
+      BendTrajectory(map_.graph, map_.trajectory);
+      annotations_.Carry(map_);
+    }
+    annotations_.MoveToAnchors(map_);
   }
 
  private:
@@ -95,15 +106,7 @@ class Editor {
   }
 
   FloorId FloorNamed(const std::string& label, const EditLine& edit) const {
-    std::vector<std::string> labels;
-    for (const Floor& floor : map_.graph.floors()) labels.push_back(floor.label);
-    const auto found = std::find(labels.begin(), labels.end(), label);
-    if (found == labels.end()) {
-      std::string all;
-      for (const std::string& known : labels) all += (all.empty() ? "" : ", ") + known;
-      edit.Fail("the map has no floor `" + label + "`, it has " + all);
-    }
-    return static_cast<FloorId>(found - labels.begin());
+    return FloorOfEdit(label, edit, map_);
   }
 
   static UncertainPose2 Uncertain(const std::vector<double>& pose, double sigma_m,
@@ -266,11 +269,7 @@ class Editor {
     const std::string name = edit.Word("name");
     edit.RequireAllTaken();
     const FloorId floor = FloorNamed(label, edit);
-    const bool is_word = std::all_of(name.begin(), name.end(), [](char c) {
-      return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
-             c == '_' || c == '.' || c == '-';
-    });
-    if (!is_word || name == "." || name == ".." || name.size() > 100) {
+    if (!IsName(name)) {
       edit.Fail("a floor's name is made of letters, digits, `_`, `.` and `-`");
     }
     for (std::size_t i = 0; i < map_.graph.floors().size(); ++i) {
@@ -327,10 +326,14 @@ class Editor {
     for (const Node& node : map_.graph.nodes()) floor_of_node.push_back(renamed(node.floor));
     map_.graph.Refloor(std::move(floors), floor_of_node);
     for (TrajectoryPose& pose : map_.trajectory) pose.floor = renamed(pose.floor);
+    for (NamedPlace& place : map_.places) place.floor = renamed(place.floor);
+    for (Area& area : map_.areas) area.floor = renamed(area.floor);
+    annotations_.RenameFloors(renamed);
   }
 
   const LoopClosureOptions& options_;
   BuildingMap& map_;
+  AnnotationEdits annotations_;
   bool pulled_ = false;  ///< edges came or went
 };
 

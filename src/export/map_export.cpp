@@ -15,6 +15,7 @@
 #include "closures_file.hpp"
 #include "floor_label.hpp"
 #include "g2o_file.hpp"
+#include "masked_mapper/rendering/drawn_areas.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"
@@ -40,6 +41,23 @@ std::vector<PosedScan> DrawnScans(const BuildingMap& result) {
     if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
   }
   return scans;
+}
+
+/// With what people drew into it.
+OccupancyGrid DrawFloor(const BuildingMap& result, const std::vector<PosedScan>& scans,
+                        FloorId floor, const GridOptions& options) {
+  OccupancyGrid grid = RenderGrid(scans, floor, options);
+  for (const Area& area : result.areas) {
+    if (area.floor == floor && area.kind == AreaKind::kErased) {
+      EraseWalls(area.corners_in_world, grid);
+    }
+  }
+  for (const Area& area : result.areas) {
+    if (area.floor == floor && area.kind == AreaKind::kKeepOut) {
+      ForgetFree(area.corners_in_world, grid);
+    }
+  }
+  return grid;
 }
 
 using Names = std::vector<std::string>;
@@ -89,7 +107,7 @@ class MapWriter {
       grid.resolution_m = options_.grid.resolution_m;
       const std::string stem = "floors/" + floors()[i].label;
       const bool is_drawn = Try({stem + ".pcd", stem + ".pgm", stem + ".yaml"}, [&] {
-        grid = RenderGrid(scans, static_cast<FloorId>(i), options_.grid);
+        grid = DrawFloor(result_, scans, static_cast<FloorId>(i), options_.grid);
       });
       is_drawn_.push_back(is_drawn);
       grids_.push_back(std::move(grid));
@@ -226,7 +244,7 @@ std::vector<FloorGrid> RenderGrids(const BuildingMap& result, const GridOptions&
   std::vector<FloorGrid> grids;
   for (std::size_t i = 0; i < result.graph.floors().size(); ++i) {
     const auto id = static_cast<FloorId>(i);
-    if (!floor || *floor == id) grids.push_back({id, RenderGrid(scans, id, options)});
+    if (!floor || *floor == id) grids.push_back({id, DrawFloor(result, scans, id, options)});
   }
   return grids;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "annotation_rows.hpp"
 #include "database.hpp"
 #include "map_rows.hpp"
 #include "masked_mapper/map/drives.hpp"
@@ -227,6 +228,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     WriteScans(result.kept_scans, database);
     WriteTransits(result.transits, database);
     WriteDrives(result.drives, database);
+    WriteAnnotations(result, database);
     Seal(database);
     transaction.Commit();
   } catch (const DatabaseError& error) {

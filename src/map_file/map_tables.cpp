@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "annotation_rows.hpp"
 #include "link_rows.hpp"
 #include "map_rows.hpp"
 #include "masked_mapper/map/drives.hpp"
@@ -38,6 +39,7 @@ class Reader {
     ReadTransits();
     ReadDrives();
     ReadLogStamps();
+    ReadAnnotations(database_, map_.result);
     return std::move(map_);
   }
 

@@ -19,7 +19,7 @@ struct Table {
 
 // Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
 // are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
-constexpr std::array<Table, 16> kTables = {{
+constexpr std::array<Table, 18> kTables = {{
     {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
@@ -65,6 +65,12 @@ constexpr std::array<Table, 16> kTables = {{
      "id INTEGER PRIMARY KEY, log TEXT NOT NULL, first_pose INTEGER NOT NULL,"
      " first_node INTEGER NOT NULL REFERENCES nodes(id), stamp_offset ANY NOT NULL,"
      " motion_source TEXT NOT NULL, reason TEXT NOT NULL"},
+    {"places",
+     "id INTEGER PRIMARY KEY, name TEXT NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
+     " x ANY NOT NULL, y ANY NOT NULL"},
+    {"areas",
+     "id INTEGER PRIMARY KEY, kind TEXT NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
+     " corners BLOB NOT NULL"},
     {"content",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, row_count INTEGER NOT NULL,"
      " checksum INTEGER NOT NULL"},
@@ -103,7 +109,8 @@ std::vector<Table> TablesOf(std::int64_t version) {
     const std::string_view name = table.name;
     if (version <= 1 && name == "drives") continue;
     if (version <= 2 && (name == "log_stamps" || name == "findings")) continue;
-    if (version <= 3 && name == "transits") continue;
+    const bool is_of_version_4 = name == "transits" || name == "places" || name == "areas";
+    if (version <= 3 && is_of_version_4) continue;
     if (version <= 1 && name == "floors") table.columns = kFloorsOfVersion1;
     if (version <= 2 && name == "nodes") table.columns = kNodesOfVersion2;
     if (version <= 2 && name == "edges") table.columns = kEdgesOfVersion2;
@@ -233,7 +240,7 @@ void Upgrade(Database& database, std::int64_t version) {
       if (table.name == name) database.Run(CreateStatement(table));
     }
   };
-  if (version <= 3) make("transits");
+  for (const char* name : {"transits", "places", "areas"}) make(name);
   if (version <= 2) {
     database.Run("ALTER TABLE edges ADD COLUMN closure INTEGER");
     make("log_stamps");

@@ -110,6 +110,59 @@ TEST_F(EditsTest, FloorsAreNamedPinnedAndJoined) {
   for (const TrajectoryPose& pose : map_.trajectory) EXPECT_EQ(pose.floor, 0);
 }
 
+TEST_F(EditsTest, PlacesAndAreasAreWrittenIntoTheMap) {
+  Edit(
+      "- places: {dock: [\"0\", 1.5, -2.0], printer: [up, 4, 7.5]}\n"
+      "- keep_out: {floor: up, area: [[1, 1], [3, 1], [3, 2]]}\n"
+      "- erase: {floor: \"0\", area: [[1, 1], [3, 1], [3, 2], [1, 2]]}\n"
+      "- places: {dock: [up, 0, 1]}\n"
+      "- same_floor: {floor: \"0\", as: up}\n");
+  ASSERT_EQ(map_.places.size(), 2U);
+  EXPECT_EQ(map_.places[0].name, "dock");
+  EXPECT_EQ(map_.places[0].at_in_world, Eigen::Vector2d(0.0, 1.0));
+  EXPECT_EQ(map_.places[1].floor, 0) << "the one that is left";
+  ASSERT_EQ(map_.areas.size(), 2U);
+  EXPECT_EQ(map_.areas[0].kind, AreaKind::kKeepOut);
+  EXPECT_EQ(map_.areas[0].floor, 0);
+  EXPECT_EQ(map_.areas[1].kind, AreaKind::kErased);
+  EXPECT_EQ(map_.areas[1].floor, 0);
+  EXPECT_EQ(map_.areas[1].corners_in_world.size(), 4U);
+}
+
+TEST_F(EditsTest, WhatIsWrittenStaysWithItsPlaceWhenTheMapIsMended) {
+  const std::size_t half = map_.trajectory.size() / 2;  // where it drove once only
+  const Pose2 before = map_.trajectory[half].T_world_robot;
+  Edit("- places: {half: [\"0\", " + std::to_string(before.x) + ", " + std::to_string(before.y) +
+       "]}\n- add_closure: {" + Stamps() + ", transform: " + TruePose() + "}\n");
+  const Pose2 after = map_.trajectory[half].T_world_robot;
+  EXPECT_GT(Distance(after, before), 0.2);
+  EXPECT_LT((map_.places[0].at_in_world - after.Translation()).norm(),
+            0.5 * Distance(after, before));
+}
+
+TEST_F(EditsTest, AnchorsPutTheMapIntoTheFrameOfTheSite) {
+  const BuildingMap before = map_;
+  const Pose2 T_site_world{100.0, -40.0, 1.0};
+  const auto anchor = [&](double x, double y, double off) {
+    const Eigen::Vector2d is = T_site_world * Eigen::Vector2d(x, y);
+    return "- anchor: {floor: \"0\", at: [" + std::to_string(x) + ", " + std::to_string(y) +
+           "], is: [" + std::to_string(is.x() + off) + ", " + std::to_string(is.y()) + "]}\n";
+  };
+  Edit("- places: {dock: [\"0\", 3, 4]}\n" + anchor(0, 0, 0.1) + anchor(10, 0, -0.1) +
+       anchor(5, 8, 0.0));
+  const Pose2 expected = T_site_world * before.trajectory.back().T_world_robot;
+  EXPECT_LT(Distance(map_.trajectory.back().T_world_robot, expected), 0.4);
+  EXPECT_LT((map_.places[0].at_in_world - T_site_world * Eigen::Vector2d(3.0, 4.0)).norm(), 0.1);
+  EXPECT_NE(map_.warnings.back().find("known points are off by"), std::string::npos)
+      << map_.warnings.back();
+  // One alone shifts.
+  map_ = before;
+  Edit(anchor(2, 3, 0.0));
+  EXPECT_NEAR(map_.trajectory.back().T_world_robot.theta,
+              before.trajectory.back().T_world_robot.theta, 1e-9);
+  EXPECT_NE(map_.warnings.back().find("says nothing of the turn"), std::string::npos);
+}
+
 TEST_F(EditsTest, NoEditsChangeNothing) {
   const BuildingMap before = map_;
   Edit("");
@@ -140,6 +193,19 @@ TEST_F(EditsTest, MistakesNameFileAndLineAndChangeNothing) {
            {"- name_floor: {floor: \"0\", name: a/b}\n", "made of letters"},
            {"- pin_elevation: {floor: \"0\", elevation_m: high}\n", "must be a number"},
            {"- same_floor: {floor: \"0\", as: \"0\"}\n", "one floor already"},
+           {"- places: {}\n", "expected name"},
+           {"- places: {a b: [\"0\", 1, 2]}\n", "made of letters"},
+           {"- places: {a: [\"0\", 1]}\n", "[floor, x, y]"},
+           {"- places: {a: [cellar, 1, 2]}\n", "it has 0, attic"},
+           {"- places: {a: [\"0\", 1, 2e5]}\n", "within 100 km"},
+           {"- keep_out: {floor: \"0\"}\n", "needs `area`"},
+           {"- keep_out: {floor: \"0\", area: [[0, 0], [1, 1]]}\n", "three corners"},
+           {"- keep_out: {floor: \"0\", area: [[0, 0], [1, 1], [2, 2]]}\n", "three corners"},
+           {"- erase: {floor: \"0\", area: [[0, 0], [1, 1], [2]]}\n", "list of points"},
+           {"- erase: {floor: \"0\", area: 7}\n", "list of points"},
+           {"- anchor: {floor: \"0\", at: [1, 2]}\n", "needs `is`"},
+           {"- anchor: {floor: \"0\", at: [1, 2], is: [1, 2, 3]}\n", "list of 2 numbers"},
+           {"- anchor: {floor: \"0\", at: [1, 2], is: [5e6, 2]}\n", "within 100 km"},
            {"- same_floor\n", "expected one edit"},
            {"- same_floor: 3\n", "needs its fields"},
            {"- {a: {}, b: {}}\n", "expected one edit"},

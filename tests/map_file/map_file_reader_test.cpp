@@ -34,6 +34,9 @@ BuildingMap AwkwardMap() {
   map.log.other_messages = {{"NEWDATA", 3}, {"SYNC", 7}};
   map.log.max_range = 0.1;
   map.warnings.emplace_back("");
+  map.places = {{"dock", 1, {-0.0, 0.1 + 0.2}}, {"b", 0, {5.0, 1e-300}}};
+  map.areas = {{AreaKind::kKeepOut, 1, {{0.0, 0.0}, {1.0, -0.0}, {0.1, 1.0}}},
+               {AreaKind::kErased, 0, {{3.0, 0.0}, {4.0, 0.0}, {4.0, 1.0}, {3.0, 1.0}}}};
   return map;
 }
 
@@ -284,6 +287,41 @@ TEST(MapFileReader, RefusesRowsThatDoNotHoldTogether) {
     WriteChanged(SampleMap(), path, change);
     EXPECT_FALSE(Refusal(path).empty()) << change;
   }
+}
+
+TEST(MapFileReader, RefusesAnnotationsThatDoNotHoldTogether) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* change : {
+           "UPDATE places SET floor = 2 WHERE id = 0",
+           "UPDATE places SET x = 9e999 WHERE id = 0",
+           "UPDATE places SET id = 7 WHERE id = 1",
+           "UPDATE areas SET kind = 'moat' WHERE id = 0",
+           "UPDATE areas SET floor = -1 WHERE id = 0",
+           "UPDATE areas SET corners = x'' WHERE id = 0",
+           "UPDATE areas SET corners = CAST(substr(corners, 9) AS BLOB) WHERE id = 1",
+           "UPDATE areas SET corners = CAST(substr(corners, 17) AS BLOB) WHERE id = 0",
+           "UPDATE areas SET corners = CAST(x'000000000000F07F' || substr(corners, 9) AS BLOB)"
+           " WHERE id = 0",
+       }) {
+    const fs::path path = folder / (std::to_string(number++) + ".mmap");
+    WriteChanged(AwkwardMap(), path, change);
+    EXPECT_NE(Refusal(path).find("damaged"), std::string::npos) << change;
+  }
+}
+
+// Before version 4 nothing was written into maps by hand.
+TEST(MapFileReader, UpgradesVersion3) {
+  const TestFolder folder;
+  WriteMapFile({}, SampleMap(), folder / "a.mmap");
+  {
+    Database database(folder / "a.mmap", OpenMode::kWrite);
+    database.Run("DROP TABLE places");
+    database.Run("DROP TABLE areas");
+    database.Run("DELETE FROM content WHERE name IN ('places', 'areas')");
+    database.Run("PRAGMA user_version = 3");
+  }
+  EXPECT_TRUE(SameMap(SampleMap(), ReadMapFile(folder / "a.mmap").result));
 }
 
 // Finite numbers that no covariance has: a solve would find nothing to divide by.

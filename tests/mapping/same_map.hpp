@@ -52,6 +52,20 @@ class MapBytes {
       AddNumber("drive", static_cast<int>(drive.motion_source));
       Add("drive", drive.reason);
     }
+    for (const NamedPlace& place : map.places) {
+      Add("place", place.name);
+      AddNumber("place", place.floor);
+      AddNumber("place", place.at_in_world.x());
+      AddNumber("place", place.at_in_world.y());
+    }
+    for (const Area& area : map.areas) {
+      AddNumber("area", static_cast<int>(area.kind));
+      AddNumber("area", area.floor);
+      for (const Eigen::Vector2d& corner : area.corners_in_world) {
+        AddNumber("area", corner.x());
+        AddNumber("area", corner.y());
+      }
+    }
     AddLog(map.log);
     AddNumber("motion source", static_cast<int>(map.motion_source));
     for (const std::string& warning : map.warnings) Add("warning", warning);

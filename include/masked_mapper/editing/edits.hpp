@@ -8,6 +8,10 @@
 //   - name_floor: {floor: "1", name: cellar}
 //   - pin_elevation: {floor: cellar, elevation_m: -3.2}
 //   - same_floor: {floor: "2", as: "0"}
+//   - places: {dock: ["0", 1.5, -2.0], printer: ["1", 4.0, 7.5]}
+//   - keep_out: {floor: "0", area: [[1, 1], [3, 1], [3, 2]]}
+//   - erase: {floor: "0", area: [[1, 1], [3, 1], [3, 2]]}
+//   - anchor: {floor: "0", at: [1.5, -2.0], is: [120.0, 80.5]}
 #pragma once
 
 #include <string>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/map/annotations.hpp"
 #include "masked_mapper/map/closure.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
@@ -74,6 +75,8 @@ struct BuildingMap {
   std::vector<Closure> closures;           ///< every pair that was offered, in order
   std::vector<Drive> drives;               ///< in order; of one log: one
   std::vector<TransitRecord> transits;     ///< of the drives of this run, in order
+  std::vector<NamedPlace> places;          ///< in order of naming
+  std::vector<Area> areas;                 ///< in order of drawing
   LogStatistics log;
   MotionSource motion_source = MotionSource::kFused;  ///< that of the first drive
   StageSeconds seconds;
