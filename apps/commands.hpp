@@ -15,6 +15,7 @@ void AddEvaluateCommand(CLI::App& program, Run& run);
 void AddExportCommand(CLI::App& program, Run& run);
 void AddInfoCommand(CLI::App& program, Run& run);
 void AddMapCommand(CLI::App& program, Run& run);
+void AddRouteCommand(CLI::App& program, Run& run);
 void AddSimulateCommand(CLI::App& program, Run& run);
 
 }  // namespace masked_mapper

@@ -79,7 +79,8 @@ int Main(int argc, char** argv) {
       "apart.\n\n"
       "  masked_mapper info LOG          what is in a log, and is it sound\n"
       "  masked_mapper map LOG -o OUT    make the map\n"
-      "  masked_mapper export OUT ...    write one format of it\n\n"
+      "  masked_mapper export OUT ...    write one format of it\n"
+      "  masked_mapper route OUT ...     find the shortest way through it\n\n"
       "Every command explains itself with --help. Exit codes: 0 done, 1 the work "
       "failed, 2 the input is at fault.");
   program.name("masked_mapper");
@@ -90,11 +91,12 @@ int Main(int argc, char** argv) {
   AddExportCommand(program, run);
   AddInfoCommand(program, run);
   AddMapCommand(program, run);
+  AddRouteCommand(program, run);
   AddSimulateCommand(program, run);
 
   if (argc < 2)
     return Fail(kInputAtFault,
-                "a command is needed: evaluate, export, info, map, simulate (--help explains)");
+                "a command is needed: evaluate, export, info, map, route, simulate (--help explains)");
   const std::string unknown = UnknownCommand(program, argv[1]);
   if (!unknown.empty()) return Fail(kInputAtFault, unknown);
   try {
