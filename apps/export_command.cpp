@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "masked_mapper/editing/edits.hpp"
+#include "masked_mapper/export/handover.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/export/single_export.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
@@ -38,6 +39,8 @@ struct ExportArguments {
   std::string edits;
   bool force = false;
   HeightBand heights;
+  ClearanceOptions clearance;
+  bool keep_frame = false;
   bool quiet = false;
 };
 
@@ -72,7 +75,8 @@ ExportFormat FormatNamed(const std::string& name) {
   if (found != names.end()) return static_cast<ExportFormat>(found - names.begin());
   std::string all;
   for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
-  throw InputError("export: --format must be one of " + all + ", all, not `" + name + "`");
+  throw InputError("export: --format must be one of " + all + ", nav2, rmf, all, not `" + name +
+                   "`");
 }
 
 /// Of a finished map only how it is drawn can still be chosen.
@@ -130,8 +134,28 @@ int ExportAll(const ExportArguments& arguments) {
   return 0;
 }
 
+/// A folder for others' tools.
+int ExportHandover(const ExportArguments& arguments) {
+  if (!arguments.floor.empty() || arguments.heights != HeightBand{}) {
+    throw InputError("export: --format " + arguments.format + " is of all floors and heights");
+  }
+  const auto existing = arguments.force ? ExistingFolder::kComplete : ExistingFolder::kRefuse;
+  CheckOutputFolder(arguments.file, existing);
+  const SavedMap map = ReadMap(arguments);
+  HandoverOptions options;
+  options.drawing = OptionsOf(map);
+  options.clearance = arguments.clearance;
+  options.keep_frame = arguments.keep_frame;
+  OutputFolder folder(arguments.file, existing);
+  (arguments.format == "nav2" ? WriteNav2 : WriteRmf)(map.result, options, folder.path());
+  folder.Commit();
+  if (!arguments.quiet) std::cout << arguments.format << ": " << arguments.file << "\n";
+  return 0;
+}
+
 int RunExport(const ExportArguments& arguments) {
   if (arguments.format == "all") return ExportAll(arguments);
+  if (arguments.format == "nav2" || arguments.format == "rmf") return ExportHandover(arguments);
   SingleExport wanted;
   wanted.format = FormatNamed(arguments.format);
   wanted.heights = arguments.heights;
@@ -163,7 +187,7 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->type_name("OUT|MAP");
   command
       ->add_option("--format", arguments->format,
-                   "octomap, pcd, ply, grid, tum or g2o; all: a folder")
+                   "octomap, pcd, ply, grid, tum, g2o, geojson or svg; all, nav2, rmf: a folder")
       ->required()
       ->type_name("F");
   command->add_option("-o,--output", arguments->file, "the file to write; one there is replaced")
@@ -187,18 +211,34 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->add_option("--edits", arguments->edits,
                    "mend the map as this file says, before it is written (docs/map_file.md)")
       ->type_name("FILE");
-  command->add_flag("--force", arguments->force, "of --format all: replace the map in FILE");
+  command
+      ->add_option("--radius", arguments->clearance.radius_m,
+                   "of nav2 and rmf: of the robot for which there must be room, m")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str()
+      ->type_name("METRES");
+  command->add_flag("--keep-frame", arguments->keep_frame,
+                    "of nav2 and rmf: do not turn the map so that its walls are square");
+  command->add_flag("--force", arguments->force,
+                    "of a folder: replace the map in FILE, or what nav2 and rmf wrote there");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
 }
 
 constexpr const char* kFooter =
     "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
     "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph);\n"
-    "all: everything that `map` writes, into a folder.\n"
+    "geojson and svg: floor plans of lines, in metres of the map, one layer per floor.\n"
+    "all: everything that `map` writes, into a folder. nav2 and rmf: folders that Nav2 "
+    "(map_server,\n"
+    "keep-out filter, route server) and Open-RMF (traffic editor, fleet adapters) open as they "
+    "are;\n"
+    "their frame.yaml says how the map was turned.\n"
     "With nothing else asked for, the bytes are those that `map` wrote.\n\n"
     "Examples:\n"
     "  masked_mapper export out --format octomap -o coarse.bt --resolution 0.2\n"
     "  masked_mapper export out/building.mmap --format grid --floor 2 -o second_floor.pgm\n"
+    "  masked_mapper export out --format svg -o plans.svg\n"
+    "  masked_mapper export out --format nav2 -o for_the_robot\n"
     "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
     "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd";
 

@@ -22,13 +22,8 @@ char Grey(Cell cell) {
 }
 
 std::string Pgm(const OccupancyGrid& grid) {
-  std::string picture =
-      "P5\n" + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n";
-  picture.reserve(picture.size() + grid.cells.size());
-  for (int row = grid.height - 1; row >= 0; --row) {
-    for (int column = 0; column < grid.width; ++column) picture += Grey(grid.at(column, row));
-  }
-  return picture;
+  return "P5\n" + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n" +
+         GreyPixels(grid);
 }
 
 std::string Yaml(const OccupancyGrid& grid, const std::string& picture_name) {
@@ -38,6 +33,15 @@ std::string Yaml(const OccupancyGrid& grid, const std::string& picture_name) {
 }
 
 }  // namespace
+
+std::string GreyPixels(const OccupancyGrid& grid) {
+  std::string pixels;
+  pixels.reserve(grid.cells.size());
+  for (int row = grid.height - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.width; ++column) pixels += Grey(grid.at(column, row));
+  }
+  return pixels;
+}
 
 void WriteOccupancyGrid(const OccupancyGrid& grid, const std::filesystem::path& stem) {
   if (grid.cells.empty()) {

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "floor_plan_file.hpp"
 #include "g2o_file.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"
 #include "octomap_file.hpp"
+#include "output_file.hpp"
 #include "point_cloud_file.hpp"
 #include "trajectory_file.hpp"
 
@@ -51,6 +53,12 @@ void WriteTree(const BuildingMap& result, const std::vector<FloorGrid>& grids,
   WriteOctomap(*BuildOctree(layers, options, heights), path);
 }
 
+std::vector<PlanLayer> PlanLayers(const std::vector<FloorGrid>& grids) {
+  std::vector<PlanLayer> layers;
+  for (const FloorGrid& grid : grids) layers.push_back({grid.floor, FitWallLines(grid.grid)});
+  return layers;
+}
+
 void WritePoses(const BuildingMap& result, const std::optional<FloorId>& floor,
                 const std::filesystem::path& path) {
   std::vector<TrajectoryPose> poses;
@@ -63,7 +71,8 @@ void WritePoses(const BuildingMap& result, const std::optional<FloorId>& floor,
 }  // namespace
 
 const std::vector<std::string>& ExportFormatNames() {
-  static const std::vector<std::string> names = {"octomap", "pcd", "ply", "grid", "tum", "g2o"};
+  static const std::vector<std::string> names = {"octomap", "pcd", "ply",     "grid",
+                                                 "tum",     "g2o", "geojson", "svg"};
   return names;
 }
 
@@ -110,6 +119,12 @@ std::vector<std::filesystem::path> WriteSingleExport(const BuildingMap& result,
       WriteOccupancyGrid(grids().front().grid, stem);
       return {stem.string() + ".pgm", stem.string() + ".yaml"};
     }
+    case ExportFormat::kGeojson:
+      WriteFile(path, GeoJsonText(result, PlanLayers(grids()), CrossingsOf(result)));
+      break;
+    case ExportFormat::kSvg:
+      WriteFile(path, SvgText(result, PlanLayers(grids()), CrossingsOf(result)));
+      break;
     case ExportFormat::kTum:
       WritePoses(result, wanted.floor, path);
       break;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <nlohmann/json.hpp>
+
 #include "export/sample_map.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
@@ -43,6 +46,40 @@ TEST(SingleExport, AFloorHasItsPosesAlone) {
   const TestFolder folder;
   WriteSingleExport(SampleMap(), {}, {ExportFormat::kTum, 1, {}}, folder / "a.tum");
   EXPECT_EQ(Split(ReadBytes(folder / "a.tum"), '\n').size(), 2U);
+}
+
+/// A room with a place and a kept-out corner as a plan of lines.
+TEST(SingleExport, PlansAreLinesInMetres) {
+  const TestFolder folder;
+  BuildingMap map = SampleMap();
+  map.places.push_back({"dock", 1, {1.0, 2.0}});
+  map.areas.push_back({AreaKind::kKeepOut, 0, {{0, 0}, {1, 0}, {0, 1}}});
+  WriteSingleExport(map, {}, {ExportFormat::kGeojson, {}, {}}, folder / "a.geojson");
+  const auto plan = nlohmann::json::parse(ReadBytes(folder / "a.geojson"));
+  std::map<std::string, int> kinds;
+  for (const auto& feature : plan.at("features")) {
+    ++kinds[feature.at("properties").at("kind")];
+    const std::string floor = feature.at("properties").at("floor");
+    EXPECT_TRUE(floor == "0" || floor == "-1");
+    if (feature["properties"]["kind"] == "place") {
+      EXPECT_EQ(feature["geometry"]["coordinates"], nlohmann::json({1.0, 2.0}));
+      EXPECT_EQ(floor, "-1");
+    }
+    if (feature["properties"]["kind"] == "keep_out") {
+      EXPECT_EQ(feature["geometry"]["coordinates"][0].size(), 4U) << "closed";
+    }
+  }
+  EXPECT_GT(kinds["wall"], 3);
+  EXPECT_EQ(kinds["place"], 1);
+  EXPECT_EQ(kinds["keep_out"], 1);
+  EXPECT_EQ(kinds["elevator"], 2);
+
+  WriteSingleExport(map, {}, {ExportFormat::kSvg, 1, {}}, folder / "a.svg");
+  const std::string svg = ReadBytes(folder / "a.svg");
+  EXPECT_EQ(svg.rfind("<svg xmlns=\"http://www.w3.org/2000/svg\"", 0), 0U);
+  EXPECT_NE(svg.find("<g id=\"floor_-1\""), std::string::npos);
+  EXPECT_EQ(svg.find("<g id=\"floor_0\""), std::string::npos);
+  EXPECT_NE(svg.find("<title>dock</title>"), std::string::npos);
 }
 
 TEST(SingleExport, HeightsLeaveOutFloors) {

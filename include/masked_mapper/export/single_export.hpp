@@ -12,9 +12,9 @@
 
 namespace masked_mapper {
 
-enum class ExportFormat { kOctomap, kPcd, kPly, kGrid, kTum, kG2o };
+enum class ExportFormat { kOctomap, kPcd, kPly, kGrid, kTum, kG2o, kGeojson, kSvg };
 
-/// octomap, pcd, ply, grid, tum, g2o; by enumeration value.
+/// octomap, pcd, ply, grid, tum, g2o, geojson, svg; by enumeration value.
 const std::vector<std::string>& ExportFormatNames();
 
 struct SingleExport {

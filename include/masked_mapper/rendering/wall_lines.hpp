@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walls as straight lines, fitted to the wall points of a grid.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "masked_mapper/rendering/occupancy_grid.hpp"
+
+namespace masked_mapper {
+
+/// In world, metres.
+struct WallLine {
+  Eigen::Vector2d a = Eigen::Vector2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+};
+
+struct WallLineOptions {
+  double neighbourhood_m = 0.2;  ///< in which a wall point's direction is told
+  double tolerance_m = 0.04;     ///< of a point from its line
+  double absorbed_m = 0.08;      ///< points so near a line are of the same wall, seen with noise
+  double largest_gap_m = 0.25;   ///< a wider one ends a line
+  double shortest_m = 0.15;
+  double corner_m = 0.2;  ///< ends so near the crossing of their lines meet there
+};
+
+/// In a fixed order. What is no line of that length (legs of chairs, specks) is left out; what is
+/// round becomes several.
+std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options = {});
+
+/// The direction that most walls have or stand square to, rad, above -pi/4 and up to pi/4; nothing
+/// when there is no wall.
+std::optional<double> WallDirection(const std::vector<WallLine>& lines);
+
+}  // namespace masked_mapper
