@@ -14,6 +14,7 @@ using Run = std::function<int()>;
 void AddEvaluateCommand(CLI::App& program, Run& run);
 void AddExportCommand(CLI::App& program, Run& run);
 void AddInfoCommand(CLI::App& program, Run& run);
+void AddLocalizeCommand(CLI::App& program, Run& run);
 void AddMapCommand(CLI::App& program, Run& run);
 void AddRouteCommand(CLI::App& program, Run& run);
 void AddSimulateCommand(CLI::App& program, Run& run);

@@ -90,13 +90,15 @@ int Main(int argc, char** argv) {
   AddEvaluateCommand(program, run);
   AddExportCommand(program, run);
   AddInfoCommand(program, run);
+  AddLocalizeCommand(program, run);
   AddMapCommand(program, run);
   AddRouteCommand(program, run);
   AddSimulateCommand(program, run);
 
   if (argc < 2)
     return Fail(kInputAtFault,
-                "a command is needed: evaluate, export, info, map, route, simulate (--help explains)");
+                "a command is needed: evaluate, export, info, localize, map, route, simulate "
+                "(--help explains)");
   const std::string unknown = UnknownCommand(program, argv[1]);
   if (!unknown.empty()) return Fail(kInputAtFault, unknown);
   try {

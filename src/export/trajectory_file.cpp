@@ -10,18 +10,18 @@
 namespace masked_mapper {
 namespace {
 
+double ElevationOf(const std::vector<Floor>& floors, FloorId floor) {
+  return floors.at(static_cast<std::size_t>(floor)).elevation;
+}
+
+}  // namespace
+
 std::string TumLine(double stamp, const Pose2& T_world_robot, double elevation) {
   const double half = 0.5 * WrapAngle(T_world_robot.theta);
   return ExactText(stamp) + " " + FixedText(T_world_robot.x, 6) + " " +
          FixedText(T_world_robot.y, 6) + " " + FixedText(elevation, 6) + " 0 0 " +
          FixedText(std::sin(half), 9) + " " + FixedText(std::cos(half), 9) + "\n";
 }
-
-double ElevationOf(const std::vector<Floor>& floors, FloorId floor) {
-  return floors.at(static_cast<std::size_t>(floor)).elevation;
-}
-
-}  // namespace
 
 void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory,
                      const std::vector<Floor>& floors, const std::filesystem::path& path) {

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
+
+/// One line, with its end.
+std::string TumLine(double stamp, const Pose2& T_world_robot, double elevation);
 
 /// One line per scan of the log. Throws std::runtime_error when the file cannot be written.
 void WriteTrajectory(const std::vector<TrajectoryPose>& trajectory,

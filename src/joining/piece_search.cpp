@@ -115,10 +115,10 @@ class PieceFinder {
 
   // On the whole floor, or as far from where it should be as the prior allows.
   std::optional<PlaceFit> Look(const Place& place, const OldFloor& floor) const {
-    if (!question_.prior) return floor.coarse->Find(place.coarse_points);
+    if (!question_.prior) return floor.scene.coarse().Find(place.coarse_points);
     const PiecePrior& prior = *question_.prior;
     const double away = Distance(prior.T_world_anchor, place.T_world_place);
-    const PlaceFit fit = floor.coarse->FindNear(
+    const PlaceFit fit = floor.scene.coarse().FindNear(
         place.coarse_points, place.T_world_place,
         prior.within_m + away * std::sin(DegToRad(prior.within_deg)), prior.within_deg);
     if (fit.score < joins_.search.min_score) return std::nullopt;

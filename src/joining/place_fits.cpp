@@ -14,33 +14,13 @@ namespace {
 
 constexpr double kScanEvery = 0.5;    // m of travel between scans that make a floor or a place
 constexpr double kFineStretch = 2.0;  // m of travel to either side, of what is held against the map
-constexpr double kFloorSpacing = 0.1;        // m between points of a floor
-constexpr double kFarthest = 1e4;            // m, from the origin
+constexpr double kFarthest = 1e4;     // m, from the origin
 constexpr std::size_t kPlacesPerFloor = 60;  // looked at for a guess
 constexpr double kSeenCell = 0.2;            // m
 constexpr double kPassed = 2.0;              // m from the other robot's way
 constexpr double kLeastShared = 40;   // points of a place where the older part has seen something
 constexpr double kLeastShare = 0.3;   // and of all its points
 constexpr double kLeastCoarse = 0.2;  // of score, below which next to nothing is shared
-
-/// Fine enough to tell rooms that only nearly look alike, and of what is near: a floor bends.
-FloorSearchOptions FineOptions(const FloorSearchOptions& coarse) {
-  FloorSearchOptions fine = coarse;
-  fine.resolution_m = 0.1;
-  fine.sigma_m = 0.15;
-  fine.angle_step_deg = 0.5;
-  fine.point_spacing_m = 0.3;
-  fine.max_range_m = 12.0;
-  fine.min_score = 0.0;
-  return fine;
-}
-
-bool IsSeen(const OccupancyGrid& grid, const Eigen::Vector2d& point) {
-  const double column = std::floor((point.x() - grid.origin_x) / grid.resolution_m);
-  const double row = std::floor((point.y() - grid.origin_y) / grid.resolution_m);
-  if (!(column >= 0.0 && row >= 0.0 && column < grid.width && row < grid.height)) return false;
-  return grid.at(static_cast<int>(column), static_cast<int>(row)) != Cell::kUnknown;
-}
 
 }  // namespace
 
@@ -105,7 +85,6 @@ ScanPoints::ConstPtr PlaceFits::StretchAround(const IndexRange& kept, std::size_
 }
 
 void PlaceFits::ReadFloors(const MapPart& older) {
-  std::map<FloorId, ScanPoints> points;
   std::map<FloorId, std::vector<PosedScan>> scans;
   for (const IndexRange& poses : older.poses) {
     const IndexRange kept = KeptOf(poses);
@@ -116,25 +95,18 @@ void PlaceFits::ReadFloors(const MapPart& older) {
       T_world_before = pose.T_world_robot;
       if (pose.in_transit || pose.T_world_robot.Translation().norm() > kFarthest) continue;
       const FloorId floor = CountsAs(pose.floor);
-      AppendTransformed(*PointsInRobot(map_.kept_scans[i].scan), pose.T_world_robot,
-                        matcher_.table.max_range_m, points[floor]);
       scans[floor].push_back({pose.T_world_robot, floor, &map_.kept_scans[i].scan});
     }
   }
-  GridOptions seen = joins_.seen;
-  seen.resolution_m = kSeenCell;
-  seen.min_hits = 1;
-  seen.threads = matcher_.threads;
-  for (const auto& [floor, cloud] : points) {
-    const ScanPoints::ConstPtr thinned =
-        AsScanPoints(ThinPoints(cloud, kFloorSpacing, 2.0 * kFarthest));
-    OldFloor known;
-    known.id = floor;
-    known.coarse = std::make_unique<FloorSearch>(*thinned, joins_.search);
-    if (!known.coarse->HasFloor()) continue;
-    known.fine = std::make_unique<FloorSearch>(*thinned, FineOptions(joins_.search));
-    known.seen = RenderGrid(scans[floor], floor, seen);
-    for (const PosedScan& scan : scans[floor]) {
+  SearchableFloorOptions options{joins_.search, FineSearchOptions(), joins_.seen,
+                                 matcher_.table.max_range_m};
+  options.seen.resolution_m = kSeenCell;
+  options.seen.min_hits = 1;
+  options.seen.threads = matcher_.threads;
+  for (const auto& [floor, scans_of_floor] : scans) {
+    OldFloor known{floor, SearchableFloor(scans_of_floor, floor, options), {}};
+    if (!known.scene.HasFloor()) continue;
+    for (const PosedScan& scan : scans_of_floor) {
       known.way_in_world.push_back(scan.T_world_robot.Translation());
     }
     floors_.push_back(std::move(known));
@@ -144,7 +116,7 @@ void PlaceFits::ReadFloors(const MapPart& older) {
 void PlaceFits::AddPlace(FloorId floor, const Pose2& T_world_place, const ScanPoints& wide,
                          const ScanPoints& near) {
   const FloorSearch coarse({}, joins_.search);
-  const FloorSearch fine({}, FineOptions(joins_.search));
+  const FloorSearch fine({}, FineSearchOptions());
   Place place{floor, T_world_place, coarse.Thinned(wide), fine.Thinned(near)};
   constexpr std::size_t kLeastPoints = 20;
   if (place.coarse_points.size() >= kLeastPoints) places_.push_back(std::move(place));
@@ -223,18 +195,18 @@ std::optional<PlaceFit> PlaceFits::FitOf(const Place& place, FloorId older,
   constexpr double kWithinDeg = 4.0;
   constexpr double kFineM = 0.5;
   constexpr double kFineDeg = 2.0;
-  const PlaceFit coarse = floor.coarse->FindNear(
+  const PlaceFit coarse = floor.scene.coarse().FindNear(
       place.coarse_points, T_older_newer * place.T_world_place, within_m, kWithinDeg);
   PlaceFit fit = coarse;
   if (coarse.score >= kLeastCoarse) {
-    fit = floor.fine->FindNear(place.fine_points, coarse.T_world_place, kFineM, kFineDeg);
+    fit = floor.scene.fine().FindNear(place.fine_points, coarse.T_world_place, kFineM, kFineDeg);
   }
   double sum = 0.0;
   std::size_t shared = 0;
   for (const Eigen::Vector2d& point : place.fine_points) {
     const Eigen::Vector2d in_world = fit.T_world_place * point;
-    const double value = floor.fine->ValueAt(in_world);
-    if (value == 0.0 && !IsSeen(floor.seen, in_world)) continue;
+    const double value = floor.scene.fine().ValueAt(in_world);
+    if (value == 0.0 && !floor.scene.IsSeen(in_world)) continue;
     sum += value;
     ++shared;
   }

@@ -4,15 +4,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "masked_mapper/joining/piece_search.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/drives.hpp"
-#include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/scan_matching/floor_search.hpp"
+#include "masked_mapper/rendering/searchable_floor.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
@@ -22,9 +20,7 @@ MapPart PartOfDrives(const BuildingMap& map, const std::vector<std::size_t>& dri
 /// A floor of the older part.
 struct OldFloor {
   FloorId id = 0;
-  std::unique_ptr<FloorSearch> coarse;
-  std::unique_ptr<FloorSearch> fine;
-  OccupancyGrid seen;
+  SearchableFloor scene;
   std::vector<Eigen::Vector2d> way_in_world;  ///< where the robot was
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "masked_mapper/scan_matching/refine_match.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -68,6 +69,62 @@ std::optional<PlaceFit> FloorSearch::Find(
   const SearchResult best = SearchJointly({problem}).front();
   if (!best.found) return std::nullopt;
   return PlaceFit{PoseOf(problem.grid, best.best), best.score};
+}
+
+std::vector<PlaceFit> FloorSearch::FindAll(const std::vector<Eigen::Vector2d>& points_in_place,
+                                           double min_score, double apart_m,
+                                           double apart_deg) const {
+  if (!table_ || points_in_place.empty()) return {};
+  // The best of every small box of poses; a slope that a box cuts off lies near a better one.
+  constexpr double kBoxDeg = 45.0;
+  const double box_m = std::max(4.0 * apart_m, 8.0 * options_.resolution_m);
+  const LookupTable::Level& cells = table_->level(0);
+  const std::int32_t half = Steps(0.5 * box_m, options_.resolution_m);
+  std::vector<SearchProblem> problems;
+  for (std::int32_t y = -1; y <= cells.height + half; y += 2 * half + 1) {
+    for (std::int32_t x = -1; x <= cells.width + half; x += 2 * half + 1) {
+      for (double deg = 0.0; deg < 360.0; deg += kBoxDeg) {
+        SearchProblem problem;
+        problem.table = table_.get();
+        problem.points_in_query = &points_in_place;
+        problem.grid.resolution_m = options_.resolution_m;
+        problem.grid.T_reference_query_guess = {options_.resolution_m * (cells.x0 + x),
+                                                options_.resolution_m * (cells.y0 + y),
+                                                DegToRad(deg)};
+        problem.grid.half_x = problem.grid.half_y = half;
+        problem.grid.angle_step = DegToRad(options_.angle_step_deg);
+        problem.grid.half_angle = Steps(0.5 * kBoxDeg, options_.angle_step_deg);
+        problem.min_score = min_score;
+        problems.push_back(problem);
+      }
+    }
+  }
+  std::vector<PlaceFit> fits;
+  const std::vector<SearchResult> results = SearchJointly(problems);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].found) {
+      fits.push_back({PoseOf(problems[i].grid, results[i].best), results[i].score});
+    }
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const PlaceFit& a, const PlaceFit& b) { return a.score > b.score; });
+  std::vector<PlaceFit> apart;
+  for (const PlaceFit& fit : fits) {
+    const bool is_near = std::any_of(apart.begin(), apart.end(), [&](const PlaceFit& better) {
+      return Distance(better.T_world_place, fit.T_world_place) < apart_m &&
+             std::abs(WrapAngle(better.T_world_place.theta - fit.T_world_place.theta)) <
+                 DegToRad(apart_deg);
+    });
+    if (!is_near) apart.push_back(fit);
+  }
+  return apart;
+}
+
+PlaceFit FloorSearch::Climb(const std::vector<Eigen::Vector2d>& points_in_place,
+                            const Pose2& T_world_place) const {
+  if (!table_ || points_in_place.empty()) return {T_world_place, 0.0};
+  const RefinedMatch refined = RefineMatch(*table_, points_in_place, T_world_place, {});
+  return {refined.T_reference_query.mean, refined.score};
 }
 
 double FloorSearch::ValueAt(const Eigen::Vector2d& point_in_world) const {

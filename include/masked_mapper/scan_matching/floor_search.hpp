@@ -44,9 +44,19 @@ class FloorSearch {
   /// The best pose of all; empty when none reaches min_score.
   std::optional<PlaceFit> Find(const std::vector<Eigen::Vector2d>& points_in_place) const;
 
+  /// All poses of at least `min_score`, the best first, none within `apart_m` and `apart_deg` of a
+  /// better one.
+  std::vector<PlaceFit> FindAll(const std::vector<Eigen::Vector2d>& points_in_place,
+                                double min_score, double apart_m, double apart_deg) const;
+
   /// The best pose within `within_m` and `within_deg` of a guess, whatever its score.
   PlaceFit FindNear(const std::vector<Eigen::Vector2d>& points_in_place,
                     const Pose2& T_world_place_guess, double within_m, double within_deg) const;
+
+  /// From a pose to the nearest maximum of the score, below the size of a cell. Along a ridge, as
+  /// in a corridor, it stays where it is.
+  PlaceFit Climb(const std::vector<Eigen::Vector2d>& points_in_place,
+                 const Pose2& T_world_place) const;
 
   /// How well a point fits the floor, 0-1.
   double ValueAt(const Eigen::Vector2d& point_in_world) const;

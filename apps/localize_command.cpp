@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// masked_mapper localize LOG... --in OUT|MAP -o DIR [--json] [--poses]
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "masked_mapper/export/localization_export.hpp"
+#include "masked_mapper/export/output_folder.hpp"
+#include "masked_mapper/localization/localizer.hpp"
+#include "masked_mapper/log/log_source.hpp"
+#include "masked_mapper/log/recordings.hpp"
+#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
+#include "option_flags.hpp"
+#include "progress_bar.hpp"
+#include "saved_map_path.hpp"
+
+namespace masked_mapper {
+namespace {
+
+struct LocalizeArguments {
+  std::vector<std::string> logs;
+  std::string map;
+  std::string out;
+  OptionFlags options;
+  bool json = false;
+  bool poses = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// The rooms' options as the user sets them, for this log; the mask is the map's.
+LocalizerOptions LocalizerOptionsOf(const Options& options) {
+  LocalizerOptions localizer;
+  const MappingOptions& mapping = options.mapping;
+  localizer.motion = mapping.motion;
+  localizer.floors = mapping.floors;
+  localizer.masks = mapping.masks;
+  localizer.closures = mapping.closures;
+  localizer.closures.refine = mapping.motion.source != MotionSource::kOdometry;
+  localizer.min_edge_length_m = mapping.nodes.min_edge_length_m;
+  localizer.max_edge_length_m = mapping.nodes.max_edge_length_m;
+  localizer.floor_search = {options.drive_joins.search, FineSearchOptions(),
+                            options.drive_joins.seen, mapping.closures.matcher.table.max_range_m};
+  constexpr double kSeenCell = 0.2;  // m
+  localizer.floor_search.seen.resolution_m = kSeenCell;
+  localizer.floor_search.seen.min_hits = 1;
+  return localizer;
+}
+
+/// The stamps of a second log may lie before those of the first, which no clock could have given.
+void Shift(double seconds, Observation& observation) {
+  std::visit([&](auto& reading) { reading.stamp += seconds; }, observation);
+}
+
+class LocalizeRun {
+ public:
+  LocalizeRun(const LocalizeArguments& arguments, const BuildingMap& map, Localizer& localizer,
+              ProgressBar& progress)
+      : arguments_(arguments), map_(map), localizer_(localizer), progress_(progress) {}
+
+  void Drive(const LogSource& source) {
+    const std::unique_ptr<LogReader> log = source.Read();
+    bool is_first = true;
+    double shift_s = 0.0;
+    while (std::optional<Observation> observation = log->Next()) {
+      constexpr double kBetweenLogs = 3600.0;  // s; nobody knows where the robot was meanwhile
+      if (is_first && has_stamp_) shift_s = newest_ + kBetweenLogs - Stamp(*observation);
+      is_first = false;
+      Shift(shift_s, *observation);
+      newest_ = Stamp(*observation);
+      has_stamp_ = true;
+      if (!localizer_.Observe(*observation)) continue;
+      progress_.Progress(log->Progress(), localizer_.result().scans.size());
+      if (arguments_.poses) {
+        std::cout << PoseLine(map_, localizer_.result().scans.back()) << std::endl;
+      }
+    }
+    if (log->Statistics().scans == 0) {
+      throw InputError(source.path() + ": not one valid laser scan in it");
+    }
+    Warn(source.path(), log->Statistics());
+  }
+
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  void Warn(const std::string& path, const LogStatistics& log) {
+    const auto warn = [&](const std::string& text) {
+      warnings_.push_back(path + ": " + text);
+      progress_.Warn(warnings_.back());
+    };
+    if (log.bad_lines > 0) {
+      warn(std::to_string(log.bad_lines) + " bad lines skipped, the first: " + log.first_bad_line);
+    }
+    if (log.truncated) warn("the log is cut off; what came before the cut was used");
+    if (log.stamp_jumps > 0) {
+      warn(std::to_string(log.stamp_jumps) + " stamps that step backwards or wrap were mended");
+    }
+  }
+
+  const LocalizeArguments& arguments_;
+  const BuildingMap& map_;
+  Localizer& localizer_;
+  ProgressBar& progress_;
+  std::vector<std::string> warnings_;
+  double newest_ = 0.0;
+  bool has_stamp_ = false;
+};
+
+std::string Closing(const Localization& drive, const std::string& doubt, std::size_t changes) {
+  std::size_t placed = 0;
+  for (const LocatedScan& scan : drive.scans) placed += scan.placed ? 1 : 0;
+  std::string text = drive.found
+                         ? "found after " + FixedText(drive.found_after_m, 1) + " m of driving"
+                         : "not found: nothing of this drive was recognised in the map";
+  text += "\n  placed    " + std::to_string(placed) + " of " + std::to_string(drive.scans.size()) +
+          " scans\n  matches   " + std::to_string(drive.matches) + ", searches on whole floors " +
+          std::to_string(drive.searches) + "\n";
+  for (const UnsureSpan& span : drive.unsure_spans) {
+    text += "  unsure    " + FixedText(span.t_a, 1) + " to " + FixedText(span.t_b, 1) +
+            " s: " + span.why + "\n";
+  }
+  if (drive.found && !doubt.empty()) text += "  at the end not sure where: " + doubt + "\n";
+  if (changes > 0) {
+    text += "  changes   " + std::to_string(changes) + " regions are not as the map has them\n";
+  }
+  return text;
+}
+
+ExistingFolder HowToTreat(const LocalizeArguments& arguments) {
+  const bool is_there = std::filesystem::exists(arguments.out);
+  return arguments.force && is_there ? ExistingFolder::kComplete : ExistingFolder::kRefuse;
+}
+
+int RunLocalize(const LocalizeArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  Options options = ReadOptions(arguments.options);
+  CheckOptions(options);
+  SettleThreads(options);
+  const ExistingFolder existing = HowToTreat(arguments);
+  CheckOutputFolder(arguments.out, existing);
+  const SavedMap saved = ReadMapFile(MapFileOf(arguments.map));
+  const std::vector<std::vector<std::string>> recordings = RecordingsOf(arguments.logs);
+  CatchInterrupts();
+  ProgressBar progress(arguments.quiet);
+  for (const std::string& line : saved.left_aside) progress.Warn(arguments.map + ": " + line);
+  Localizer localizer(saved.result, saved.origin.mask, LocalizerOptionsOf(options));
+  LocalizeRun run(arguments, saved.result, localizer, progress);
+  for (const std::vector<std::string>& files : recordings) {
+    progress.Stage("localizing");
+    if (files.size() == 1) {
+      run.Drive(LogSource(files.front(), options.mapping.log));
+    } else {
+      run.Drive(LogSource(files, options.mapping.log));
+    }
+  }
+  const std::vector<MapChange> changes = localizer.Changes();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const LocalizationRun description{arguments.logs, arguments.map, taken.count(), run.warnings()};
+  OutputFolder folder(arguments.out, existing);
+  WriteLocalization(saved.result, localizer.result(), changes, description, folder.path());
+  ThrowIfInterrupted();
+  folder.Commit();
+  progress.Finish();
+  if (arguments.json) {
+    std::cout << LocalizationSummaryText(saved.result, localizer.result(), changes, description);
+  } else if (!arguments.quiet && !arguments.poses) {
+    std::cout << Closing(localizer.result(), localizer.Doubt(), changes.size())
+              << "drive: " << arguments.out << "\n";
+  }
+  return 0;
+}
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  masked_mapper localize today.log.gz --in out -o today\n"
+    "  masked_mapper localize today.log.gz --in out -o today --json\n"
+    "  robot | masked_mapper localize - --in out -o today --poses\n"
+    "\n"
+    "No start pose is needed, and no floor: places that come into question are kept until one is\n"
+    "believed. Then a scan is matched where the map's mask says that it pays. A robot that was\n"
+    "carried off, or rode to a floor that nothing tells, is not sure, says so, and is found "
+    "again.\n"
+    "A log of another building is not found; that is an answer, and no error.\n"
+    "\n"
+    "DIR holds trajectory.tum (in the map's frame, placed scans only, also those that were placed "
+    "in\n"
+    "hindsight), floors.csv (t,label as known at t; `?`: not sure), summary.json, and page.html "
+    "with\n"
+    "the drive drawn into the map. The map stays as it is.";
+
+}  // namespace
+
+void AddLocalizeCommand(CLI::App& program, Run& run) {
+  auto arguments = std::make_shared<LocalizeArguments>();
+  CLI::App* command = program.add_subcommand("localize", "Find a robot in a finished map");
+  command
+      ->add_option(
+          "LOG", arguments->logs,
+          "the robot's log, `-`: standard input; of several, one is driven after the other")
+      ->required();
+  command->add_option("--in", arguments->map, "what `map` wrote, or the building.mmap in it")
+      ->required()
+      ->type_name("OUT|MAP");
+  command->add_option("-o,--output", arguments->out, "folder to write to")
+      ->required()
+      ->type_name("DIR");
+  AddOptionFlags(*command, arguments->options);
+  command->add_flag("--json", arguments->json, "print what summary.json holds");
+  command->add_flag("--poses", arguments->poses,
+                    "print a line of JSON for every scan as it is answered:\n"
+                    "t, floor, x, y, theta, sigma_x, sigma_y, sigma_theta, sure");
+  command->add_flag("--force", arguments->force, "write into a DIR that exists");
+  command->add_flag("--quiet", arguments->quiet, "print errors only");
+  command->footer(kFooter);
+  command->callback([arguments, &run] { run = [arguments] { return RunLocalize(*arguments); }; });
+}
+
+}  // namespace masked_mapper

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a robot is in a finished map, one observation at a time: no start pose, floor unknown.
+//
+// Until a place is believed, all that come into question are kept (on whole floors, and through
+// rides). Then the robot is followed by its motion, and a scan is matched only where the mask says
+// that it pays, against what the map knows around its nodes. When what is seen no longer fits, the
+// robot is not sure any more and looks again. The map stays as it is.
+//
+// Poses are in the map's world. Ours; the paper builds maps for this and stops there.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "masked_mapper/localization/map_changes.hpp"
+#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/map/building_map.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/motion/floor_tracker.hpp"
+#include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/rendering/searchable_floor.hpp"
+#include "masked_mapper/sensor/observation.hpp"
+
+namespace masked_mapper {
+
+struct LocalizerOptions {
+  MotionOptions motion;  ///< kAuto: fused where the first scan has odometry, else by scans alone
+  FloorOptions floors;
+  MaskOptions masks;
+  LoopClosureOptions closures;
+  SearchableFloorOptions floor_search;
+  double min_edge_length_m = 1.5;  ///< of way between two matches at the least
+  double max_edge_length_m = 9.0;  ///< at the most
+};
+
+/// The answer to one scan.
+struct LocatedScan {
+  double stamp = 0.0;      ///< s
+  double log_stamp = 0.0;  ///< s, as the log gives it to the scan
+  Pose2 T_odom_robot;      ///< along the motion path
+  bool sure = false;       ///< the place was believed when the scan came
+  bool placed = false;     ///< there is a pose: sure, or found in hindsight
+  FloorId floor = 0;       ///< of the map; where placed
+  UncertainPose2 T_world_robot;
+};
+
+struct UnsureSpan {
+  double t_a = 0.0;  ///< s, first and last scan
+  double t_b = 0.0;
+  std::string why;  ///< for people
+};
+
+struct Localization {
+  std::vector<LocatedScan> scans;  ///< in order
+  bool found = false;
+  double found_after_m = 0.0;  ///< of driving, the first time; where found
+  int matches = 0;             ///< scans held against a node of the map
+  int searches = 0;            ///< on whole floors
+  std::vector<UnsureSpan> unsure_spans;
+};
+
+class Localizer {
+ public:
+  /// `map` outlives this. Throws InputError when `mask` is no mask expression.
+  Localizer(const BuildingMap& map, const std::string& mask, const LocalizerOptions& options);
+  ~Localizer();
+
+  /// Observations in order of stamps. True: it was a scan, and result().scans has the answer.
+  bool Observe(const Observation& observation);
+
+  /// Up to now.
+  const Localization& result() const;
+
+  /// What is no longer as the map has it, as far as was seen from places that were sure.
+  std::vector<MapChange> Changes() const;
+
+  /// Why the robot is not sure where it is, in one line for people; empty when it is.
+  std::string Doubt() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace masked_mapper

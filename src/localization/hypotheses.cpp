@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kFirstSearch = 2.0;  // m of the way; before it a scan or two are no place
+constexpr double kMostBetween = 8.0;  // m of the way between searches
+constexpr double kSearched = 16.0;    // m of the way that are looked for
+constexpr double kFollowed = 4.0;     // m of the way by which a hypothesis is held in place
+constexpr double kAlike = 0.12;       // of score; what fits that much worse is no rival
+constexpr double kLeastScore = 0.5;   // of the coarse search
+constexpr std::size_t kMost = 400;    // hypotheses
+
+}  // namespace
+
+void Hypotheses::Restart(std::size_t scan) {
+  hypotheses_.clear();
+  patches_.clear();
+  first_scan_ = scan;
+  next_search_m_ = kFirstSearch;
+  search_was_complete_ = false;
+}
+
+void Hypotheses::SuggestAround(FloorId floor, const Pose2& T_world_odom) {
+  for (const FloorId other : map_.floors()) {
+    Hypothesis hypothesis;
+    hypothesis.floor = other;
+    hypothesis.T_world_odom = T_world_odom;
+    // A robot is likelier where it was, or a ride away, than anywhere else.
+    constexpr double kStays = 0.5;
+    const auto others = static_cast<double>(std::max<std::size_t>(2, map_.floors().size()) - 1);
+    hypothesis.prior_nats = std::log(other == floor ? kStays : 0.5 * (1.0 - kStays) / others);
+    hypothesis.anchors.push_back({first_scan_, other, T_world_odom});
+    hypotheses_.push_back(std::move(hypothesis));
+  }
+}
+
+void Hypotheses::KeepFloor(FloorId floor) {
+  only_floor_ = floor;
+  hypotheses_.erase(std::remove_if(hypotheses_.begin(), hypotheses_.end(),
+                                   [&](const Hypothesis& one) { return one.floor != floor; }),
+                    hypotheses_.end());
+}
+
+void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t scan) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kSlack = 0.8;  // m; weather, and what the map's own elevations are off
+  only_floor_.reset();
+  std::vector<Hypothesis> after;
+  for (const Hypothesis& before : hypotheses_) {
+    for (const FloorId floor : map_.floors()) {
+      const double step = map_.Facts(floor).elevation - map_.Facts(before.floor).elevation;
+      if (climb_m && std::abs(step - *climb_m) > kSigmas * sigma_m + kSlack) continue;
+      after.push_back(before);
+      after.back().floor = floor;
+      after.back().anchors.push_back({scan, floor, before.T_world_odom});
+    }
+  }
+  hypotheses_ = std::move(after);
+}
+
+void Hypotheses::Judge(Hypothesis& hypothesis, std::size_t first_patch) const {
+  const SearchableFloor& floor = *map_.FloorAt(hypothesis.floor);
+  hypothesis.fits.resize(first_patch, kMapSaysNothing);
+  for (std::size_t i = first_patch; i < patches_.size(); ++i) {
+    hypothesis.fits.push_back(FitOf(patches_[i].patch, floor, hypothesis.T_world_odom));
+    hypothesis.tally.Add(patches_[i].patch, hypothesis.fits.back());
+  }
+}
+
+// The motion path drifts; what was seen last holds it in place.
+void Hypotheses::Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const {
+  constexpr double kLeastFit = 0.4;
+  constexpr double kLargestStep = 0.3;  // m
+  const FloorSearch& fine = map_.FloorAt(hypothesis.floor)->fine();
+  const Pose2 T_world_robot = hypothesis.T_world_odom * stretch.T_odom_robot();
+  const PlaceFit fit = fine.Climb(fine.Thinned(*stretch.Points(kFollowed)), T_world_robot);
+  if (fit.score < kLeastFit || Distance(fit.T_world_place, T_world_robot) > kLargestStep) return;
+  hypothesis.T_world_odom = fit.T_world_place * Inverse(stretch.T_odom_robot());
+  hypothesis.anchors.push_back({scan, hypothesis.floor, hypothesis.T_world_odom});
+}
+
+void Hypotheses::Step(Stretch& stretch, std::size_t scan) {
+  const std::size_t known = patches_.size();
+  for (Patch& patch : stretch.TakePatches()) {
+    patches_.push_back({std::move(patch), stretch.length_m()});
+  }
+  for (SeenPatch& old : patches_) {  // none found later is judged by it
+    if (old.at_m < stretch.length_m() - kSearched) old.patch.points_in_odom.clear();
+  }
+  for (Hypothesis& hypothesis : hypotheses_) {
+    Follow(hypothesis, stretch, scan);
+    Judge(hypothesis, known);
+  }
+  if (stretch.length_m() >= next_search_m_) {
+    next_search_m_ =
+        stretch.length_m() + std::clamp(0.25 * stretch.length_m(), kFirstSearch, kMostBetween);
+    Search(stretch);
+  }
+  MergeAndOrder(stretch.T_odom_robot());
+  Prune();
+}
+
+bool Hypotheses::IsKnown(const Hypothesis& found, const Pose2& T_odom_robot) const {
+  const Pose2 T_world_found = found.T_world_odom * T_odom_robot;
+  return std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& known) {
+    const Pose2 T_world_known = known.T_world_odom * T_odom_robot;
+    return known.floor == found.floor && Distance(T_world_known, T_world_found) < kPlaceM &&
+           std::abs(WrapAngle(T_world_known.theta - T_world_found.theta)) < DegToRad(kPlaceDeg);
+  });
+}
+
+void Hypotheses::Search(const Stretch& stretch) {
+  const ScanPoints::Ptr points = stretch.Points(kSearched);
+  ++searches_;
+  search_was_complete_ = true;
+  double best = 0.0;
+  std::vector<std::pair<FloorId, std::vector<Eigen::Vector2d>>> searched;
+  for (const FloorId id : map_.floors()) {
+    if (only_floor_ && id != *only_floor_) continue;
+    const FloorSearch& coarse = map_.FloorAt(id)->coarse();
+    std::vector<Eigen::Vector2d> thinned = coarse.Thinned(*points);
+    const std::optional<PlaceFit> fit = coarse.Find(thinned);
+    if (!fit) continue;
+    best = std::max(best, fit->score);
+    searched.emplace_back(id, std::move(thinned));
+  }
+  if (best == 0.0) return;
+  const std::vector<Eigen::Vector2d> fine_points =
+      map_.FloorAt(searched.front().first)->fine().Thinned(*points);
+  std::vector<std::pair<double, Hypothesis>> found;
+  for (const auto& [id, thinned] : searched) {
+    const SearchableFloor& floor = *map_.FloorAt(id);
+    for (const PlaceFit& coarse : floor.coarse().FindAll(
+             thinned, std::max(kLeastScore, best - kAlike), kPlaceM, kPlaceDeg)) {
+      Hypothesis hypothesis;
+      hypothesis.floor = id;
+      hypothesis.prior_nats = -map_.LogPlaces();
+      const double within_m = 0.5;
+      const PlaceFit fine = floor.fine().FindNear(fine_points, coarse.T_world_place, within_m, 2.0);
+      hypothesis.T_world_odom = floor.fine().Climb(fine_points, fine.T_world_place).T_world_place *
+                                Inverse(stretch.T_odom_robot());
+      if (!IsKnown(hypothesis, stretch.T_odom_robot())) {
+        found.emplace_back(coarse.score, std::move(hypothesis));
+      }
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  const std::size_t room = kMost - std::min(kMost, hypotheses_.size());
+  if (found.size() > room) {
+    search_was_complete_ = false;
+    found.resize(room);
+  }
+  std::size_t first_patch = patches_.size();
+  while (first_patch > 0 && !patches_[first_patch - 1].patch.points_in_odom.empty()) --first_patch;
+  for (auto& [score, hypothesis] : found) {
+    hypothesis.anchors.push_back({first_scan_, hypothesis.floor, hypothesis.T_world_odom});
+    Judge(hypothesis, first_patch);
+    hypotheses_.push_back(std::move(hypothesis));
+  }
+}
+
+void Hypotheses::MergeAndOrder(const Pose2& T_odom_robot) {
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [&](const Hypothesis& a, const Hypothesis& b) { return Nats(a) > Nats(b); });
+  std::vector<Hypothesis> all;
+  all.swap(hypotheses_);
+  for (Hypothesis& one : all) {
+    if (!IsKnown(one, T_odom_robot)) hypotheses_.push_back(std::move(one));
+  }
+}
+
+// What the best has left behind for good, and what the map contradicts for itself.
+void Hypotheses::Prune() {
+  if (hypotheses_.empty()) return;
+  const Hypothesis best = hypotheses_.front();
+  const double gone = 2.0 * options_.told_apart_nats;
+  hypotheses_.erase(std::remove_if(hypotheses_.begin(), hypotheses_.end(),
+                                   [&](const Hypothesis& one) {
+                                     return NatsOf(one.tally, options_.agrees_anywhere, options_) <
+                                                -gone ||
+                                            LeadOf(best.fits, one.fits, options_) > gone;
+                                   }),
+                    hypotheses_.end());
+}
+
+const Hypothesis* Hypotheses::Believed() const {
+  if (hypotheses_.empty()) return nullptr;
+  const Hypothesis& best = hypotheses_.front();
+  if (Nats(best) < options_.believed_nats) return nullptr;
+  const bool was_found = best.prior_nats <= -map_.LogPlaces();
+  if (was_found && !search_was_complete_) return nullptr;
+  const bool is_alone = std::all_of(hypotheses_.begin() + 1, hypotheses_.end(),
+                                    [&](const Hypothesis& rival) { return IsBehind(rival, best); });
+  return is_alone ? &best : nullptr;
+}
+
+// What differs tells them apart, or the rival explains too little of what was seen.
+bool Hypotheses::IsBehind(const Hypothesis& rival, const Hypothesis& best) const {
+  const double prior = std::max(0.0, best.prior_nats - rival.prior_nats);
+  if (LeadOf(best.fits, rival.fits, options_) + prior >= options_.told_apart_nats) {
+    return true;
+  }
+  return 2 * rival.tally.agreeing < best.tally.agreeing &&
+         Nats(best) - Nats(rival) >= options_.told_apart_nats;
+}
+
+}  // namespace masked_mapper

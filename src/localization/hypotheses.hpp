@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The places where the robot may be, while it is not known which: found on whole floors, followed
+// along its way and through rides, given up where the map contradicts them, until one is believed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "evidence.hpp"
+#include "known_map.hpp"
+#include "stretch.hpp"
+
+namespace masked_mapper {
+
+/// From this scan on a hypothesis had the motion path there.
+struct PathAnchor {
+  std::size_t scan = 0;
+  FloorId floor = 0;
+  Pose2 T_world_odom;
+};
+
+struct Hypothesis {
+  FloorId floor = 0;
+  Pose2 T_world_odom;
+  double prior_nats = 0.0;  ///< before anything was seen, against all other places together
+  Tally tally;
+  std::vector<PatchFit> fits;       ///< of all patches, in order; none from before it was found
+  std::vector<PathAnchor> anchors;  ///< in order of scans
+};
+
+class Hypotheses {
+ public:
+  Hypotheses(const KnownMap& map, const EvidenceOptions& options) : map_(map), options_(options) {}
+
+  /// Nothing is known; what follows is seen from `scan` on.
+  void Restart(std::size_t scan);
+  /// The robot may be where it was held to be, or straight above or below.
+  void SuggestAround(FloorId floor, const Pose2& T_world_odom);
+  /// Only on this floor.
+  void KeepFloor(FloorId floor);
+  /// It rode: `climb_m` up, give or take `sigma_m`; nothing: nobody knows. Floors alone change.
+  void Ride(std::optional<double> climb_m, double sigma_m, std::size_t scan);
+
+  /// Takes what was seen since the last call; looks on whole floors when that is due.
+  void Step(Stretch& stretch, std::size_t scan);
+
+  /// The one that is believed; null while there is none.
+  const Hypothesis* Believed() const;
+  /// All that are held to be possible, the likeliest first.
+  const std::vector<Hypothesis>& all() const { return hypotheses_; }
+
+  int searches() const { return searches_; }
+
+ private:
+  struct SeenPatch {
+    Patch patch;
+    double at_m = 0.0;  ///< of the stretch
+  };
+  double Nats(const Hypothesis& hypothesis) const {
+    return hypothesis.prior_nats + NatsOf(hypothesis.tally, options_.agrees_elsewhere, options_);
+  }
+  void Judge(Hypothesis& hypothesis, std::size_t first_patch) const;
+  void Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const;
+  void Search(const Stretch& stretch);
+  bool IsKnown(const Hypothesis& found, const Pose2& T_odom_robot) const;
+  bool IsBehind(const Hypothesis& rival, const Hypothesis& best) const;
+  void MergeAndOrder(const Pose2& T_odom_robot);
+  void Prune();
+
+  const KnownMap& map_;
+  EvidenceOptions options_;
+  std::vector<Hypothesis> hypotheses_;
+  std::vector<SeenPatch> patches_;
+  std::size_t first_scan_ = 0;
+  std::optional<FloorId> only_floor_;
+  double next_search_m_ = 0.0;
+  bool search_was_complete_ = false;
+  int searches_ = 0;
+};
+
+}  // namespace masked_mapper

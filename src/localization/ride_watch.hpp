@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Changes of floor as they happen, by the sensors that measure them: the last minutes are looked at
+// again and again, as mapping looks at a whole log.
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "masked_mapper/motion/floor_tracker.hpp"
+
+namespace masked_mapper {
+
+/// The robot is between floors, or was until just now.
+struct RideNews {
+  std::optional<double> climb_m;  ///< up, so far; nothing: nobody knows
+  double sigma_m = 0.0;
+  bool is_over = false;
+};
+
+class RideWatch {
+ public:
+  explicit RideWatch(const FloorOptions& options) : options_(options) {}
+
+  /// Observations in order of stamps; labels are not its business.
+  void Observe(const Observation& observation);
+
+  /// Whether it is time for News() again.
+  bool IsDue() const;
+  /// Of a ride that goes on; of one that is over, once.
+  std::optional<RideNews> News();
+
+ private:
+  std::vector<FloorTransit> Transits() const;
+
+  FloorOptions options_;
+  std::deque<OdometryReading> odometry_;  ///< of the last minutes, as below
+  std::deque<PressureReading> pressure_;
+  std::deque<AccelerationReading> acceleration_;
+  double newest_ = 0.0;  ///< s
+  double looked_ = 0.0;  ///< s, when the last minutes were last looked at
+  double told_to_ = -std::numeric_limits<double>::infinity();  ///< s: rides up to here are told
+  bool may_tell_ = false;  ///< there was a reading that tells of floors
+};
+
+}  // namespace masked_mapper
