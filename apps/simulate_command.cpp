@@ -20,8 +20,6 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kUsualImuRate = 100.0;  // Hz
-
 struct SimulateArguments {
   std::string building;
   std::string log;
@@ -30,7 +28,6 @@ struct SimulateArguments {
   double length_m = 0.0;
   std::vector<std::string> visits;
   std::string lidar = "2d";
-  bool with_imu = false;
   bool perfect = false;
   bool floor_labels = false;
   bool without_pressure = false;
@@ -97,7 +94,6 @@ int RunSimulate(const SimulateArguments& arguments) {
   constexpr double kImuRate = 100.0;  // Hz
   if (arguments.with_imu) options.acceleration.rate = kImuRate;
   if (arguments.without_pressure) options.pressure.rate = 0.0;
-  if (arguments.with_imu) options.acceleration.rate = kUsualImuRate;
   const SimulationNoise noise = arguments.perfect ? SimulationNoise::None() : SimulationNoise{};
 
   CatchInterrupts();
@@ -163,13 +159,13 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
                    "2d, or a 3D one, whose clouds need a bag: vlp16, os1-32, mid360")
       ->capture_default_str()
       ->type_name("MODEL");
-  command->add_flag("--with-imu", arguments->with_imu, "an accelerometer, 100 Hz");
   command->add_flag("--perfect", arguments->perfect, "no noise, no drift, no people");
   command->add_flag("--floor-labels", arguments->floor_labels,
                     "write FLOOR lines, as an elevator's interface would");
   command->add_flag("--without-pressure", arguments->without_pressure, "no barometer");
-  command->add_flag("--with-imu", arguments->with_imu,
-                    "an accelerometer, too, of a cheap IMU: noise, bias, vibration while driving");
+  command->add_flag(
+      "--with-imu", arguments->with_imu,
+      "an accelerometer of a cheap IMU, 100 Hz: noise, bias, vibration while driving");
   command->add_flag("--force", arguments->force, "replace a log that was not simulated");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->footer(
