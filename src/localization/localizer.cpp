@@ -28,6 +28,7 @@ constexpr double kOpenSigma = 0.15;     // m, from which on a match is due whate
 constexpr double kHeld = 3.0;           // m of way from a match on which the pose is as good as it
 constexpr double kComparedEvery = 0.5;  // m of way between scans that tell what has changed
 constexpr double kRetry = 0.5;          // m of way after a match that did not fit
+constexpr double kCabRest = 3.0;        // s, that wheels rest in a cab when a ride is noticed
 constexpr std::size_t kFew = 24;        // hypotheses that are looked at while the robot rests
 
 UncertainPose2 Widened(UncertainPose2 pose, double sigma_m, double sigma_deg) {
@@ -83,6 +84,7 @@ class Localizer::Impl {
   void ObserveScan(const LaserScan& scan) {
     if (!motion_) Begin(scan);
     const bool was_carried = WasCarried(scan);
+    NoteRest(scan);
     const bool ride_turned = WatchRides();
     motion_->Observe(scan, ride_turned);
     const Pose2& T_odom_robot = motion_->T_odom_robot();
@@ -106,6 +108,15 @@ class Localizer::Impl {
     result_.matches = tracker_.matches();
     result_.searches = hypotheses_.searches();
     T_raw_before_ = scan.T_odom_robot;
+  }
+
+  void NoteRest(const LaserScan& scan) {
+    newest_ = scan.stamp;
+    constexpr double kCabRadius = 0.25;  // m
+    const Pose2 now = scan.T_odom_robot ? *scan.T_odom_robot : motion_->T_odom_robot();
+    if (T_rest_ && Distance(*T_rest_, now) <= kCabRadius) return;
+    T_rest_ = now;
+    moved_at_s_ = scan.stamp;
   }
 
   void Begin(const LaserScan& scan) {
@@ -177,13 +188,15 @@ class Localizer::Impl {
     if (news && !is_riding_) {
       is_riding_ = true;
       ride_floor_ = floor_;
-      motion_->EnterTransit();
+      is_in_cab_ = newest_ - moved_at_s_ >= kCabRest;
+      // On stairs the scene changes step by step, and its far walls hold the way.
+      if (is_in_cab_) motion_->EnterTransit();
     }
     if (news) Follow(*news);
     if (is_riding_ && (!news || news->is_over)) {
       is_riding_ = false;
       if (!news) floor_ = ride_floor_;
-      motion_->LeaveTransit();
+      if (is_in_cab_) motion_->LeaveTransit();
       mask_->Restart();
       match_is_due_ = true;
     }
@@ -363,6 +376,10 @@ class Localizer::Impl {
   double doubt_nats_ = 0.0;
 
   bool is_riding_ = false;
+  bool is_in_cab_ = false;   ///< the ride that goes on, or the last
+  double newest_ = 0.0;      ///< s
+  double moved_at_s_ = 0.0;  ///< s, since when the robot rests
+  std::optional<Pose2> T_rest_;
   FloorId ride_floor_ = 0;  ///< left last
   std::string label_;
   std::string why_;

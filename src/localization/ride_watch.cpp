@@ -12,6 +12,7 @@ namespace {
 constexpr double kWindow = 240.0;   // s; the weather does little in it
 constexpr double kLookEvery = 0.8;  // s
 constexpr double kLongGap = 15.0;   // s without a reading: a ride may have been in between
+constexpr double kSettled = 5.0;    // s; until then stairs may only pause
 constexpr double kSame = 3.0;       // s, by which the end of a ride may look otherwise later
 
 std::vector<double> StampsOf(const PressureHeights& heights) {
@@ -69,10 +70,12 @@ bool RideWatch::IsDue() const { return may_tell_ && newest_ >= looked_ + kLookEv
 std::optional<RideNews> RideWatch::News() {
   looked_ = newest_;
   for (const FloorTransit& transit : Transits()) {
-    // What the beginning of the last minutes cuts was told when it was whole.
-    const bool is_old = std::isinf(transit.start) && !std::isinf(transit.end);
+    // What the beginning of the last minutes cuts was told when it was whole; and one that was told
+    // may look a little otherwise later.
+    const bool is_cut = std::isinf(transit.start);
+    const bool is_old = is_cut ? !std::isinf(transit.end) : transit.start < told_to_;
     if (is_old || transit.end <= told_to_ + kSame) continue;
-    RideNews news{transit.climb, transit.climb_sigma, !std::isinf(transit.end)};
+    RideNews news{transit.climb, transit.climb_sigma, newest_ >= transit.end + kSettled};
     if (news.is_over) told_to_ = transit.end;
     return news;
   }
