@@ -83,7 +83,7 @@ DriveJoinOptions FloorJoinOptions::PlacesOfOneDrive() {
   DriveJoinOptions places;
   places.place_spacing_m = 2.0;
   places.min_places = 3;
-  places.min_share = 0.5;
+  places.min_share = 0.6;
   places.min_spread_m = 4.0;
   return places;
 }

@@ -85,8 +85,8 @@ std::string WhatIsThereInsteadOfScans(RosBag* bag) {
   if (topics.size() > kMostListed) {
     list += ", and " + std::to_string(topics.size() - kMostListed) + " more topics";
   }
-  return "holds no sensor_msgs/LaserScan and no PointCloud2 (topics: " + (list.empty() ? "none" : list) + ")" +
-         RemedyFor(bag->Connections()) + DamageOf(*bag);
+  return "holds no sensor_msgs/LaserScan and no PointCloud2 (topics: " +
+         (list.empty() ? "none" : list) + ")" + RemedyFor(bag->Connections()) + DamageOf(*bag);
 }
 
 }  // namespace masked_mapper

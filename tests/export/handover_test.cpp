@@ -27,10 +27,11 @@ LaserScan ScanInRoom(const Pose2& T_room_robot) {
   scan.max_range = 30.0F;
   for (int beam = 0; beam < 720; ++beam) {
     const double angle = T_room_robot.theta + scan.Angle(static_cast<std::size_t>(beam));
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    const double to_x = ((c > 0 ? 3.0 : -3.0) - T_room_robot.x) / (c == 0.0 ? 1e-9 : c);
-    const double to_y = ((s > 0 ? 3.0 : -3.0) - T_room_robot.y) / (s == 0.0 ? 1e-9 : s);
+    const auto reach = [](double direction, double at) {
+      return direction == 0.0 ? 100.0 : ((direction > 0.0 ? 3.0 : -3.0) - at) / direction;
+    };
+    const double to_x = reach(std::cos(angle), T_room_robot.x);
+    const double to_y = reach(std::sin(angle), T_room_robot.y);
     scan.ranges.push_back(static_cast<float>(std::min(to_x, to_y)));
   }
   return scan;

@@ -44,7 +44,7 @@ TEST(LocalizationExport, WritesPlacedScansAndWhatWasSure) {
   const fs::path folder = fs::path(testing::TempDir()) / "localization_export";
   fs::create_directories(folder);
   const BuildingMap map = OneFloor();
-  WriteLocalization(map, TwoScans(), {}, {{"a.log"}, "out"}, folder);
+  WriteLocalization(map, TwoScans(), {}, {{"a.log"}, "out", 0.0, {}}, folder);
   EXPECT_EQ(TextOf(folder / "trajectory.tum"),
             "10.5 1.000000 2.000000 3.500000 0 0 0.000000000 1.000000000\n");
   EXPECT_EQ(TextOf(folder / "floors.csv"), "t,label\n10,?\n10.5,2\n");
@@ -62,8 +62,8 @@ TEST(LocalizationExport, WritesPlacedScansAndWhatWasSure) {
 TEST(LocalizationExport, NotFoundIsAnAnswer) {
   Localization drive;
   drive.scans.resize(1);
-  const auto summary =
-      nlohmann::json::parse(LocalizationSummaryText(OneFloor(), drive, {}, {{"a.log"}, "out"}));
+  const auto summary = nlohmann::json::parse(
+      LocalizationSummaryText(OneFloor(), drive, {}, {{"a.log"}, "out", 0.0, {}}));
   EXPECT_FALSE(summary.at("found"));
   EXPECT_TRUE(summary.at("found_after_m").is_null());
 }

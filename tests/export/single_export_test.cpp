@@ -52,6 +52,7 @@ TEST(SingleExport, AFloorHasItsPosesAlone) {
 TEST(SingleExport, PlansAreLinesInMetres) {
   const TestFolder folder;
   BuildingMap map = SampleMap();
+  if (map.drives.empty()) map.drives.push_back({});
   map.places.push_back({"dock", 1, {1.0, 2.0}});
   map.areas.push_back({AreaKind::kKeepOut, 0, {{0, 0}, {1, 0}, {0, 1}}});
   WriteSingleExport(map, {}, {ExportFormat::kGeojson, {}, {}}, folder / "a.geojson");

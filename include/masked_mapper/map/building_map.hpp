@@ -65,7 +65,7 @@ struct TransitRecord {
   double height_m = 0.0;  ///< up
   double sigma_m = 0.0;
   std::vector<std::string> by;  ///< the sensors that decided
-  std::string open;  ///< why nobody can tell which floor was reached; empty: it is known
+  std::string open;             ///< why nobody can tell which floor was reached; empty: it is known
 };
 
 struct BuildingMap {

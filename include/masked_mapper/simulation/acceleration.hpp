@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An accelerometer on a robot: gravity, the elevator's two pulses, driving, vibration. On stairs the
-// robot is pitched, and gravity with it.
+// An accelerometer on a robot: gravity, the elevator's two pulses, driving, vibration. On stairs
+// the robot is pitched, and gravity with it.
 #pragma once
 
 #include <Eigen/Core>
