@@ -33,8 +33,10 @@ constexpr double kFitSigma = 0.03;               // m
 constexpr int kTried = 4;  // to each side
 constexpr double kTriedStep = 0.3;
 
-constexpr double kSigmas = 4.0;    // that overrule what the log states
-constexpr double kMaterial = 0.2;  // of a turn in the period; less bends no wall
+constexpr double kSigmas = 4.0;  // that overrule what the log states
+// Of a turn in the period: scanners turn once in it. Less bends walls little, and is what scans
+// alone make of a motion that they know late.
+constexpr double kMaterial = 0.4;
 
 MotionOptions ScansAlone(MotionOptions options) {
   options.source = MotionSource::kScans;
