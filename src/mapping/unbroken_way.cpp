@@ -4,15 +4,6 @@
 #include <cmath>
 
 namespace masked_mapper {
-namespace {
-
-MotionOptions ScansAlone(MotionOptions options) {
-  options.source = MotionSource::kScans;
-  return options;
-}
-
-}  // namespace
-
 UnbrokenWay::UnbrokenWay(const MotionOptions& options, bool wheels_are_due)
     : options_(ScansAlone(options)), wheels_are_due_(wheels_are_due) {}
 

@@ -32,11 +32,6 @@ bool IsBeyond(const Pose2& motion, double distance_m, double turn_deg) {
   return std::hypot(motion.x, motion.y) > distance_m || std::abs(motion.theta) > DegToRad(turn_deg);
 }
 
-MotionOptions ScansAlone(MotionOptions options) {
-  options.source = MotionSource::kScans;
-  return options;
-}
-
 }  // namespace
 
 StandstillCheck::StandstillCheck(const MotionOptions& options) : options_(ScansAlone(options)) {}

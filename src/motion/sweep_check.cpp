@@ -38,11 +38,6 @@ constexpr double kSigmas = 4.0;  // that overrule what the log states
 // alone make of a motion that they know late.
 constexpr double kMaterial = 0.4;
 
-MotionOptions ScansAlone(MotionOptions options) {
-  options.source = MotionSource::kScans;
-  return options;
-}
-
 std::string TurnText(double seconds_per_rad) { return FixedText(seconds_per_rad * kTurn, 3); }
 
 /// Every so many points, all along the sweep.

@@ -29,11 +29,6 @@ constexpr double kStretchTime = 1.5;   // s
 constexpr double kSureTurn = 1.0;      // deg of sigma up to which scans are sure of a turn
 constexpr double kWheelsApart = 0.04;  // s from one pose of the wheels that is kept to the next
 
-MotionOptions ScansAlone(MotionOptions options) {
-  options.source = MotionSource::kScans;
-  return options;
-}
-
 }  // namespace
 
 WheelCheck::WheelCheck(const MotionOptions& options) : options_(ScansAlone(options)) {}

@@ -96,21 +96,34 @@ struct TurnFit {
   double as_told = 0.0;  // rad^2, the same with a factor of 1
 };
 
+/// Sums over all stretches for the next factor. A residual of `scale_rad` halves a stretch's say.
+struct WeightedSums {
+  double products = 0.0;
+  double squares = 0.0;
+  double residuals = 0.0;  ///< of the factor's variance
+};
+
+WeightedSums SumsAt(const std::vector<StretchPair>& pairs, double factor, double scale_rad) {
+  WeightedSums sums;
+  for (const StretchPair& pair : pairs) {
+    const double residual = pair.by_scans.theta - factor * pair.by_wheels.theta;
+    const double ratio = residual / scale_rad;
+    const double weight = 1.0 / (1.0 + ratio * ratio);
+    sums.products += weight * pair.by_scans.theta * pair.by_wheels.theta;
+    sums.squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
+    sums.residuals +=
+        weight * weight * residual * residual * pair.by_wheels.theta * pair.by_wheels.theta;
+  }
+  return sums;
+}
+
 TurnFit FitTurns(const std::vector<StretchPair>& pairs) {
   TurnFit fit;
   // Weights of bounded squares, from a factor of one on.
   for (int iteration = 0; iteration < 5; ++iteration) {
-    double products = 0.0;
-    double squares = 0.0;
-    for (const StretchPair& pair : pairs) {
-      const double residual = pair.by_scans.theta - fit.factor * pair.by_wheels.theta;
-      const double ratio = residual / DegToRad(kMostResidual);
-      const double weight = 1.0 / (1.0 + ratio * ratio);
-      products += weight * pair.by_scans.theta * pair.by_wheels.theta;
-      squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
-    }
-    if (!(squares > 1e-9)) break;
-    fit.factor = products / squares;
+    const WeightedSums sums = SumsAt(pairs, fit.factor, DegToRad(kMostResidual));
+    if (!(sums.squares > 1e-9)) break;
+    fit.factor = sums.products / sums.squares;
   }
   for (const StretchPair& pair : pairs) {
     fit.left += Bounded(pair.by_scans.theta - fit.factor * pair.by_wheels.theta);
@@ -201,20 +214,9 @@ std::optional<Estimated> IfSurely(const Estimated& factor, double least_fault) {
 Estimated FineFactor(const std::vector<StretchPair>& pairs, double factor) {
   Estimated fine{factor, 0.0};
   for (int iteration = 0; iteration < 10; ++iteration) {
-    double products = 0.0;
-    double squares = 0.0;
-    double residuals = 0.0;
-    for (const StretchPair& pair : pairs) {
-      const double residual = pair.by_scans.theta - fine.value * pair.by_wheels.theta;
-      const double ratio = residual / DegToRad(kTurnSigma);
-      const double weight = 1.0 / (1.0 + ratio * ratio);
-      products += weight * pair.by_scans.theta * pair.by_wheels.theta;
-      squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
-      residuals +=
-          weight * weight * residual * residual * pair.by_wheels.theta * pair.by_wheels.theta;
-    }
-    if (!(squares > 1e-9)) break;
-    fine = {products / squares, std::sqrt(residuals) / squares};
+    const WeightedSums sums = SumsAt(pairs, fine.value, DegToRad(kTurnSigma));
+    if (!(sums.squares > 1e-9)) break;
+    fine = {sums.products / sums.squares, std::sqrt(sums.residuals) / sums.squares};
   }
   return fine;
 }

@@ -37,6 +37,12 @@ struct MotionOptions {
 /// A scan straightened for a robot that goes on as in the step before it.
 LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double seconds);
 
+/// The same, of a robot whose wheels are not asked.
+inline MotionOptions ScansAlone(MotionOptions options) {
+  options.source = MotionSource::kScans;
+  return options;
+}
+
 class MotionEstimator {
  public:
   explicit MotionEstimator(const MotionOptions& options);
