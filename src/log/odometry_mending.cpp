@@ -2,6 +2,7 @@
 #include "masked_mapper/log/odometry_mending.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -65,9 +66,12 @@ class WheelPath {
   explicit WheelPath(const OdometryMending& mending) : mending_(mending) {}
 
   Pose2 At(const Pose2& T_odom_robot) {
-    if (mending_.travel_factor == 1.0 && mending_.turn_factor == 1.0) return T_odom_robot;
+    const bool is_as_told = mending_.travel_factor == 1.0 && mending_.turn_factor == 1.0 &&
+                            !mending_.turns_left_out;
+    if (is_as_told) return T_odom_robot;
     if (last_) {
       Pose2 step = Between(*last_, T_odom_robot);
+      if (mending_.turns_left_out) step = {std::hypot(step.x, step.y), 0.0, 0.0};
       step.x *= mending_.travel_factor;
       step.y *= mending_.travel_factor;
       step.theta = WrapAngle(step.theta * mending_.turn_factor);

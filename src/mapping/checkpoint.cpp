@@ -77,7 +77,8 @@ void Serialize(Archive& archive, TimeSpan& span) {
 
 template <class Archive>
 void Serialize(Archive& archive, OdometryMending& mending) {
-  archive(mending.scan_clock_s, mending.travel_factor, mending.turn_factor, mending.left_out);
+  archive(mending.scan_clock_s, mending.travel_factor, mending.turn_factor, mending.turns_left_out,
+          mending.left_out);
 }
 
 template <class Archive>

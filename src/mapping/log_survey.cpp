@@ -53,6 +53,7 @@ class Surveyor {
         wheels_(options.motion),
         sweep_(options.motion),
         unbroken_(options.motion, !mending.left_out.empty()),
+        turns_left_out_(mending.turns_left_out),
         asks_wheels_(options.motion.source == MotionSource::kAuto ||
                      options.motion.source == MotionSource::kFused) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
@@ -71,6 +72,14 @@ class Surveyor {
   /// What is to be mended of the wheels, each with its finding.
   WheelMending Wheels() const {
     if (!asks_wheels_ || !survey_.odometry_moves) return {};
+    if (turns_left_out_) {
+      // Of the turns no more is to be asked: where the robot turns on its place, such wheels rest.
+      WheelReport report = wheels_.Find({});
+      report.fault.scan_clock_s.reset();
+      report.fault.turn_factor.reset();
+      report.fault.turns_useless = false;
+      return MendingOf(report.fault, {}, log_);
+    }
     // With another clock wheels seem to stand still where they do not.
     const std::vector<FalseRest> rests = standstill_.Find();
     WheelReport report = wheels_.Find({});
@@ -86,11 +95,11 @@ class Surveyor {
     NoteTravel(way_, survey_.floors);
     survey_.floor_source = floors_.source();
     survey_.warnings = floors_.warnings();
-    if (survey_.odometry_moves) {
+    if (survey_.odometry_moves && !turns_left_out_) {
       const WheelReport report = wheels_.Find(SpansOf(standstill_.Find()));
       const std::string fault = WarningOf(FindMountFault(report.stretches), T_robot_laser_);
       if (!fault.empty()) survey_.warnings.push_back(fault);
-    } else if (survey_.has_odometry) {
+    } else if (survey_.has_odometry && !survey_.odometry_moves) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
     }
     SettleSweep();
@@ -150,6 +159,7 @@ class Surveyor {
   WheelCheck wheels_;
   SweepCheck sweep_;
   UnbrokenWay unbroken_;
+  bool turns_left_out_;
   bool asks_wheels_;  ///< not where the user settled whom to believe
   Pose2 T_robot_laser_;
   TimeSpan log_;                        ///< from the first scan to the last

@@ -107,6 +107,7 @@ class LogDrive {
     }
     settled_ = options_;
     settled_.motion.source = SettleMotionSource(path_, options_.motion, survey_);
+    settled_.motion.wheels_tell_turns = !survey_.mending.turns_left_out;
     Begin();
     if (checkpoint) {
       mapper_->RestoreState(mapper_bytes, std::move(checkpoint->parts));

@@ -2,6 +2,7 @@
 #include "wheel_mending.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -37,17 +38,22 @@ WheelMending MendingOf(const WheelFault& fault, const std::vector<FalseRest>& re
   };
   if (fault.scan_clock_s) {
     mending.scan_clock_s = fault.scan_clock_s->value;
-    tell("stamps of the scans are " + FixedText(mending.scan_clock_s, 2) +
-             " s ahead of the odometry's",
+    tell("stamps of the scans are " + FixedText(std::abs(mending.scan_clock_s), 2) + " s " +
+             (mending.scan_clock_s > 0.0 ? "ahead of" : "behind") + " the odometry's",
          *fault.scan_clock_s, log,
          "they are mapped with that taken off; the trajectory has the log's stamps");
     return wheels;
   }
-  if (fault.turns_useless || fault.travel_useless) {
-    tell(std::string(fault.turns_useless ? "the turns" : "the way") +
-             " that the odometry tells are not those that scans see",
-         {1.0, 0.0}, log, "odometry is left out; scans alone tell the motion");
+  if (fault.travel_useless) {
+    tell("the way that the odometry tells is not that which scans see", {1.0, 0.0}, log,
+         "odometry is left out; scans alone tell the motion");
     mending.left_out = {Always()};
+    return wheels;
+  }
+  if (fault.turns_useless) {
+    tell("the turns that the odometry tells are not those that scans see", {1.0, 0.0}, log,
+         "it is asked for the length of the way only; scans alone tell the turns");
+    mending.turns_left_out = true;
     return wheels;
   }
   for (const FalseRest& rest : rests) {
@@ -76,6 +82,7 @@ void Add(const WheelMending& more, WheelMending* wheels) {
   mending.scan_clock_s += more.mending.scan_clock_s;
   mending.travel_factor *= more.mending.travel_factor;
   mending.turn_factor *= more.mending.turn_factor;
+  mending.turns_left_out |= more.mending.turns_left_out;
   mending.left_out.insert(mending.left_out.end(), more.mending.left_out.begin(),
                           more.mending.left_out.end());
   std::sort(mending.left_out.begin(), mending.left_out.end(),

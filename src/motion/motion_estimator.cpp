@@ -9,6 +9,11 @@
 #include "masked_mapper/sensor/straightened_scan.hpp"
 
 namespace masked_mapper {
+namespace {
+
+constexpr double kSurelyBacking = 0.02;  // m that scans have seen a robot back
+
+}  // namespace
 
 LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double seconds) {
   constexpr double kLongest = 2.0;  // s, of a step that tells how the robot goes on
@@ -78,11 +83,15 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
     return;
   }
   const bool has_wheels = HearsWheels(scan);
-  UncertainPose2 step = has_wheels ? wheels_.T_node_robot() : StepWithoutWheels(scan.stamp);
+  const bool has_turns = has_wheels && options_.wheels_tell_turns;
+  UncertainPose2 step = has_turns    ? wheels_.T_node_robot()
+                        : has_wheels ? StepWithoutTurns(scan.stamp)
+                                     : StepWithoutWheels(scan.stamp);
+  const double wheel_travel_m = wheels_.T_node_robot().mean.x;
   wheels_.StartNode();
   const double elapsed = last_scan_stamp_ ? scan.stamp - *last_scan_stamp_ : 0.0;
   if (options_.source != MotionSource::kOdometry) {
-    if (has_wheels && last_scan_stamp_) {
+    if (has_turns && last_scan_stamp_) {
       step.mean.theta = WrapAngle(step.mean.theta - gyro_bias_.rate() * elapsed);
     }
     const Pose2 by_wheels = step.mean;
@@ -96,7 +105,8 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
                         std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg)));
     if (elapsed > kGap && went_on) RestartScans();
     step = scan_odometry_.Observe(scan, step, must_match);
-    if (has_wheels) LearnWheelNoise(by_wheels, step.mean);
+    if (has_turns) LearnWheelNoise(by_wheels, step.mean);
+    NoteAdvance(wheel_travel_m, step.mean.x);
   }
   last_step_s_ = elapsed;
   last_scan_stamp_ = scan.stamp;
@@ -121,6 +131,29 @@ UncertainPose2 MotionEstimator::StepWithoutWheels(double stamp) const {
                          elapsed;
   const double sigma_rad = DegToRad(options_.wheelless.sigma_turn_deg_per_s) * elapsed;
   step.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
+  return step;
+}
+
+// Ours: a robot drives forward unless scans have seen it back; it rests before it changes that.
+void MotionEstimator::NoteAdvance(double wheel_travel_m, double advance_m) {
+  constexpr double kAtRest = 0.001;    // m from scan to scan
+  constexpr double kRemembered = 0.1;  // m
+  if (wheel_travel_m < kAtRest) advance_m = -advance_m_;
+  advance_m_ = std::clamp(advance_m_ + advance_m, -kRemembered, kRemembered);
+}
+
+// The way is an arc through the turn of the step before. Wheels at rest say nothing of a turn on
+// the place.
+UncertainPose2 MotionEstimator::StepWithoutTurns(double stamp) const {
+  UncertainPose2 step = StepWithoutWheels(stamp);
+  const double travel_m =
+      (advance_m_ < -kSurelyBacking ? -1.0 : 1.0) * wheels_.T_node_robot().mean.x;
+  step.mean.x = travel_m * std::cos(0.5 * step.mean.theta);
+  step.mean.y = travel_m * std::sin(0.5 * step.mean.theta);
+  const double aside = 0.5 * travel_m;
+  const Eigen::Matrix3d by_wheels = wheels_.T_node_robot().covariance;
+  step.covariance(0, 0) = by_wheels(0, 0);
+  step.covariance(1, 1) = by_wheels(1, 1) + aside * aside * step.covariance(2, 2);
   return step;
 }
 

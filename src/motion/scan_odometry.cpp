@@ -39,6 +39,9 @@ constexpr double kSceneSigma = 0.05;  // m, to tell the same scene from another 
 
 constexpr double kSameScene = 0.7;  // of the points near the robot agree: surely the same scene
 
+/// Sigma of the turn since the last match up to which wheels know that there was none.
+constexpr double kSureOfRestDeg = 1.0;  // deg
+
 constexpr double kMostChi2 = 16.0;  // of three degrees of freedom: one in a thousand
 
 constexpr int kMostLost = 5;  // scans in a row that agree with nothing: this is another place
@@ -181,8 +184,10 @@ bool ScanOdometry::Predict(const UncertainPose2& T_last_now) {
   path_.T_matched_robot = path_.T_matched_robot * T_last_now;
   path_.T_map_robot = path_.T_map_matched * path_.T_matched_robot.mean;
   heading_sigma_rad_ = std::numeric_limits<double>::infinity();
-  const bool is_sure = path_.T_matched_robot.covariance.topLeftCorner<2, 2>().trace() <
-                       options_.match_distance_m * options_.match_distance_m;
+  const Eigen::Matrix3d& covariance = path_.T_matched_robot.covariance;
+  const bool is_sure = covariance.topLeftCorner<2, 2>().trace() <
+                           options_.match_distance_m * options_.match_distance_m &&
+                       covariance(2, 2) < DegToRad(kSureOfRestDeg) * DegToRad(kSureOfRestDeg);
   const bool is_at_rest =
       is_sure && Distance(path_.T_map_matched, path_.T_map_robot) < options_.match_distance_m &&
       Turn(path_.T_map_matched, path_.T_map_robot) < DegToRad(options_.match_angle_deg);

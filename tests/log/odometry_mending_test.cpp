@@ -67,7 +67,7 @@ std::vector<LaserScan> Scans(const std::vector<Observation>& log) {
 
 TEST(OdometryMending, NothingToMendIsNothingDone) {
   EXPECT_EQ(Read(Drive(0.0), {}).size(), Drive(0.0).size());
-  EXPECT_TRUE(Read({}, {1.0, 2.0, 3.0, {{0.0, 1.0}}}).empty());
+  EXPECT_TRUE(Read({}, {1.0, 2.0, 3.0, true, {{0.0, 1.0}}}).empty());
 }
 
 TEST(OdometryMending, ScansGetTheOdometryOfWhenTheyWereTaken) {
@@ -106,6 +106,17 @@ TEST(OdometryMending, StepsAreMultiplied) {
   mending.turn_factor = 1.0;
   const std::vector<LaserScan> turned = Scans(Read(Drive(0.0), mending));
   EXPECT_NEAR(turned.back().T_odom_robot->theta, 0.1 * turned.back().stamp, 1e-9) << "rad";
+}
+
+TEST(OdometryMending, OfTurnsLeftOutTheWayStays) {
+  OdometryMending mending;
+  mending.turns_left_out = true;
+  mending.travel_factor = 0.5;
+  const std::vector<LaserScan> scans = Scans(Read(Drive(0.0), mending));
+  const double way = 0.5 * (scans.back().stamp - scans.front().stamp);
+  EXPECT_NEAR(scans.back().T_odom_robot->x - scans.front().T_odom_robot->x, way, 0.01) << "m";
+  EXPECT_EQ(scans.back().T_odom_robot->y, 0.0);
+  EXPECT_EQ(scans.back().T_odom_robot->theta, 0.0);
 }
 
 TEST(OdometryMending, WhatIsLeftOutIsSilent) {

@@ -87,6 +87,39 @@ TEST(MotionEstimator, SilenceOfTheWheelsIsNoRest) {
   }
 }
 
+TEST(MotionEstimator, OfWheelsWithoutTurnsTheWayIsTaken) {
+  // On, round on the place, back; then through a blank corridor, where only wheels tell the way.
+  std::vector<Pose2> in_room = {Pose2{2.0, 2.5, 0.0}};
+  for (const Pose2& step :
+       {Pose2{0.06, 0.0, 0.0}, Pose2{0.0, 0.0, DegToRad(6.0)}, Pose2{-0.06, 0.0, 0.02}}) {
+    for (int i = 0; i < 40; ++i) in_room.push_back(in_room.back() * step);
+  }
+  std::vector<Pose2> in_corridor = {Pose2{0.0, 0.1, 0.05}};
+  for (int i = 0; i < 200; ++i) in_corridor.push_back(in_corridor.back() * Pose2{0.06, 0.0, 0.0});
+  for (const auto& [truth, scene] :
+       {std::pair{in_room, FurnishedRoom()}, std::pair{in_corridor, BlankCorridor()}}) {
+    MotionOptions options;
+    options.source = MotionSource::kFused;
+    options.wheels_tell_turns = false;
+    MotionEstimator motion(options);
+    std::mt19937 random(4);
+    double way = 0.0;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (i > 0) way += Distance(truth[i - 1], truth[i]);
+      LaserScan scan = scene.Scan(truth[i], 361, 270.0, &random, 0.01);
+      scan.stamp = 0.2 * static_cast<double>(i);
+      scan.T_odom_robot = Pose2{way, 0.0, 0.0};
+      motion.Observe(scan);
+      worst = std::max(worst, Distance(motion.T_odom_robot(), Between(truth.front(), truth[i])));
+    }
+    EXPECT_LT(worst, 0.25) << "m, in a scene of " << scene.walls.size() << " walls";
+    const double turned_rad = Between(truth.front(), truth.back()).theta;
+    EXPECT_LT(RadToDeg(std::abs(WrapAngle(motion.T_odom_robot().theta - turned_rad))), 0.5)
+        << "deg";
+  }
+}
+
 TEST(MotionEstimator, ScansWithoutReturnsLeaveTheWheels) {
   MotionOptions options;
   options.source = MotionSource::kFused;

@@ -27,6 +27,9 @@ struct MotionOptions {
   MotionSource source = MotionSource::kAuto;  ///< kAuto is settled before a drive begins
   double longest_step_m = 2.0;     ///< from scan to scan; beyond it they share too little view
   double longest_turn_deg = 60.0;  ///< the same
+  /// Not where a survey found turns by wheels to be of no use: their way is a length then, and the
+  /// direction is that of the step before.
+  bool wheels_tell_turns = true;
   DeadReckoningOptions odometry;
   ScanOdometryOptions scans;
   WheelNoiseOptions wheel_noise;
@@ -69,13 +72,16 @@ class MotionEstimator {
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
-            last_step_s_, in_transit_, was_heard_, is_heard_, T_odom_robot_, T_node_robot_);
+            last_step_s_, advance_m_, in_transit_, was_heard_, is_heard_, T_odom_robot_,
+            T_node_robot_);
   }
 
  private:
   void RestartScans();
   bool HearsWheels(const LaserScan& scan);
   UncertainPose2 StepWithoutWheels(double stamp) const;
+  UncertainPose2 StepWithoutTurns(double stamp) const;
+  void NoteAdvance(double wheel_travel_m, double advance_m);
   void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);
 
   MotionOptions options_;
@@ -86,6 +92,7 @@ class MotionEstimator {
   std::optional<double> last_scan_stamp_;
   UncertainPose2 last_step_;
   double last_step_s_ = 0.0;
+  double advance_m_ = 0.0;   ///< by scans since the wheels rested; below 0 the robot backs
   bool in_transit_ = false;  ///< since the scene was last begun anew
   bool was_heard_ = false;   ///< the wheels, up to the scan before
   bool is_heard_ = false;    ///< the wheels, since the scan before
