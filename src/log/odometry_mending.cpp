@@ -66,8 +66,8 @@ class WheelPath {
   explicit WheelPath(const OdometryMending& mending) : mending_(mending) {}
 
   Pose2 At(const Pose2& T_odom_robot) {
-    const bool is_as_told = mending_.travel_factor == 1.0 && mending_.turn_factor == 1.0 &&
-                            !mending_.turns_left_out;
+    const bool is_as_told =
+        mending_.travel_factor == 1.0 && mending_.turn_factor == 1.0 && !mending_.turns_left_out;
     if (is_as_told) return T_odom_robot;
     if (last_) {
       Pose2 step = Between(*last_, T_odom_robot);
