@@ -115,6 +115,26 @@ TEST(SurveyLog, LeavesOutWheelsThatStandStillInPassing) {
   }
 }
 
+TEST(SurveyLog, OfWheelsThatNeverTurnTheWayIsKept) {
+  const std::string path = TemporaryLog("no_turns.log");
+  const BoxScene room = FurnishedRoom();
+  LogWriter writer(path);
+  Pose2 T_world_robot{2.0, 2.5, 0.0};
+  for (int i = 0; i < 400; ++i) {
+    T_world_robot = T_world_robot * Pose2{0.06, 0.0, DegToRad(i % 60 < 30 ? 3.5 : 2.5)};
+    LaserScan scan = room.Scan(T_world_robot, 361, 270.0);
+    scan.stamp = 1000.0 + 0.2 * i;
+    scan.T_odom_robot = Pose2{T_world_robot.x, T_world_robot.y, 0.0};
+    writer.Write(scan);
+  }
+  writer.Close();
+  const LogSurvey survey = Survey(path, {});
+  EXPECT_TRUE(survey.mending.turns_left_out);
+  EXPECT_TRUE(survey.mending.left_out.empty());
+  ASSERT_EQ(survey.findings.size(), 1U);
+  EXPECT_NE(survey.findings[0].what.find("turns"), std::string::npos) << survey.findings[0].what;
+}
+
 TEST(SurveyLog, ScansFarApartAreLeftToTheWheels) {
   LogSurvey survey;
   survey.has_odometry = survey.odometry_moves = true;
