@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // masked_mapper export OUT|MAP --format F -o FILE
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "aside_folder.hpp"
 #include "commands.hpp"
+#include "export_space.hpp"
 #include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/handover.hpp"
 #include "masked_mapper/export/output_folder.hpp"
@@ -41,31 +41,9 @@ struct ExportArguments {
   HeightBand heights;
   ClearanceOptions clearance;
   bool keep_frame = false;
+  std::vector<std::string> clouds;
+  double voxel_m = 0.05;
   bool quiet = false;
-};
-
-/// A folder beside the file, gone in the end: what is written half never stands in the file's
-/// place.
-class AsideFolder {
- public:
-  explicit AsideFolder(const fs::path& file)
-      : path_(file.parent_path() /
-              ("." + file.filename().string() + ".partial-" + std::to_string(getpid()))) {
-    std::error_code error;
-    fs::create_directory(path_, error);
-    if (error) throw InputError("cannot write " + file.string() + ": " + error.message());
-  }
-  ~AsideFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  AsideFolder(const AsideFolder&) = delete;
-  AsideFolder& operator=(const AsideFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 /// The format by name. Throws InputError that names all.
@@ -153,7 +131,28 @@ int ExportHandover(const ExportArguments& arguments) {
   return 0;
 }
 
+/// What the lidar of the log saw.
+int ExportClouds(const ExportArguments& arguments) {
+  SpaceRequest request;
+  request.format = arguments.format;
+  request.file = arguments.file;
+  request.logs = arguments.clouds;
+  request.options.voxel_m = arguments.voxel_m;
+  request.options.heights = arguments.heights;
+  request.quiet = arguments.quiet;
+  CheckSpaceRequest(request);
+  const SavedMap map = ReadMap(arguments);
+  if (!arguments.floor.empty()) {
+    request.options.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);
+  }
+  return ExportSpace(map, request);
+}
+
 int RunExport(const ExportArguments& arguments) {
+  if (!arguments.clouds.empty()) return ExportClouds(arguments);
+  if (arguments.format == "las") {
+    throw InputError("export: las is of points in space: give their log with --clouds");
+  }
   if (arguments.format == "all") return ExportAll(arguments);
   if (arguments.format == "nav2" || arguments.format == "rmf") return ExportHandover(arguments);
   SingleExport wanted;
@@ -186,8 +185,9 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->required()
       ->type_name("OUT|MAP");
   command
-      ->add_option("--format", arguments->format,
-                   "octomap, pcd, ply, grid, tum, g2o, geojson or svg; all, nav2, rmf: a folder")
+      ->add_option(
+          "--format", arguments->format,
+          "octomap, pcd, ply, las, grid, tum, g2o, geojson or svg; all, nav2, rmf: a folder")
       ->required()
       ->type_name("F");
   command->add_option("-o,--output", arguments->file, "the file to write; one there is replaced")
@@ -212,6 +212,15 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
                    "mend the map as this file says, before it is written (docs/map_file.md)")
       ->type_name("FILE");
   command
+      ->add_option("--clouds", arguments->clouds,
+                   "of pcd, ply and las: all that the 3D lidar of this log saw, the one that was "
+                   "mapped; its bags in order")
+      ->type_name("LOG...");
+  command->add_option("--voxel", arguments->voxel_m, "of --clouds: one point per voxel, m")
+      ->check(CLI::Range(0.005, 10.0))
+      ->capture_default_str()
+      ->type_name("METRES");
+  command
       ->add_option("--radius", arguments->clearance.radius_m,
                    "of nav2 and rmf: of the robot for which there must be room, m")
       ->check(CLI::Range(0.0, 10.0))
@@ -226,7 +235,8 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
 
 constexpr const char* kFooter =
     "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
-    "map_server has them, of one floor), tum (the pose of every scan), g2o (the pose graph);\n"
+    "map_server has them, of one floor), las (LAS 1.4, with --clouds alone), tum (the pose of\n"
+    "every scan), g2o (the pose graph);\n"
     "geojson and svg: floor plans of lines, in metres of the map, one layer per floor.\n"
     "all: everything that `map` writes, into a folder. nav2 and rmf: folders that Nav2 "
     "(map_server,\n"
@@ -240,6 +250,7 @@ constexpr const char* kFooter =
     "  masked_mapper export out --format svg -o plans.svg\n"
     "  masked_mapper export out --format nav2 -o for_the_robot\n"
     "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
+    "  masked_mapper export out --format las --clouds drive.mcap -o building.las\n"
     "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd";
 
 }  // namespace

@@ -56,6 +56,24 @@ void WriteCloud(const std::string& header, const ColouredCloud& cloud,
   WriteFile(path, bytes);
 }
 
+// The same of points in space, with their intensity last.
+template <typename AppendColour>
+void WriteSpace(const std::string& header, const std::vector<SpacePoint>& points,
+                const std::vector<Colour>& colours, const AppendColour& append_colour,
+                const std::filesystem::path& path) {
+  std::string bytes = header;
+  bytes.reserve(header.size() + points.size() * 24);
+  for (const SpacePoint& point : points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Append(static_cast<float>(point.position(axis)), &bytes);
+    }
+    append_colour(colours.at(point.label), &bytes);
+    Append(point.label, &bytes);
+    Append(point.intensity, &bytes);
+  }
+  WriteFile(path, bytes);
+}
+
 }  // namespace
 
 std::vector<Colour> FloorColours(const std::vector<Floor>& floors) {
@@ -129,6 +147,62 @@ void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
         Append(point.r, bytes);
         Append(point.g, bytes);
         Append(point.b, bytes);
+      },
+      path);
+}
+
+void WriteSpacePcd(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
+                   const std::filesystem::path& path) {
+  const std::string count = std::to_string(points.size());
+  const std::string header =
+      "# .PCD v0.7 - Point Cloud Data file format\n"
+      "VERSION 0.7\n"
+      "FIELDS x y z rgba label intensity\n"
+      "SIZE 4 4 4 4 4 4\n"
+      "TYPE F F F U U F\n"
+      "COUNT 1 1 1 1 1 1\n"
+      "WIDTH " +
+      count +
+      "\n"
+      "HEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\n"
+      "POINTS " +
+      count +
+      "\n"
+      "DATA binary\n";
+  WriteSpace(
+      header, points, colours,
+      [](const Colour& colour, std::string* bytes) {
+        Append(std::uint32_t{0xFF000000U} | static_cast<std::uint32_t>(colour.red) << 16U |
+                   static_cast<std::uint32_t>(colour.green) << 8U | colour.blue,
+               bytes);
+      },
+      path);
+}
+
+void WriteSpacePly(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
+                   const std::filesystem::path& path) {
+  const std::string header =
+      "ply\n"
+      "format binary_little_endian 1.0\n"
+      "element vertex " +
+      std::to_string(points.size()) +
+      "\n"
+      "property float x\n"
+      "property float y\n"
+      "property float z\n"
+      "property uchar red\n"
+      "property uchar green\n"
+      "property uchar blue\n"
+      "property uint label\n"
+      "property float intensity\n"
+      "end_header\n";
+  WriteSpace(
+      header, points, colours,
+      [](const Colour& colour, std::string* bytes) {
+        Append(colour.red, bytes);
+        Append(colour.green, bytes);
+        Append(colour.blue, bytes);
       },
       path);
 }

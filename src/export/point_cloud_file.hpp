@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "masked_mapper/pose_graph/pose_graph.hpp"
+#include "masked_mapper/rendering/voxel_cloud.hpp"
 
 namespace masked_mapper {
 
@@ -35,6 +36,12 @@ ColouredCloud Coloured(const pcl::PointCloud<pcl::PointXYZL>& cloud,
 /// Fields x y z rgba label, as PCL writes its PointXYZRGBL. Throws std::runtime_error when the file
 /// cannot be written.
 void WritePcd(const ColouredCloud& cloud, const std::filesystem::path& path);
+
+/// The same with the field intensity behind; `colours` by label.
+void WriteSpacePcd(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
+                   const std::filesystem::path& path);
+void WriteSpacePly(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
+                   const std::filesystem::path& path);
 
 /// Properties x y z red green blue label. Throws std::runtime_error when the file cannot be
 /// written.

@@ -76,15 +76,6 @@ void BagObservations::MoveOn() {
   if (finished_) in_order_.Finish();
 }
 
-double BagObservations::StampOf(std::size_t stream, double time, double header) const {
-  const TopicClock& clock = plan_.clocks[stream];
-  const double offset = clock.offset.value_or(plan_.clock_offset);
-  const bool same_clock = std::abs(offset - plan_.clock_offset) <= kClocksApart;
-  if (!(header > 0.0) || !same_clock) return time + plan_.clock_offset;
-  const bool is_stray = clock.is_steady && std::abs(header - time - offset) > kStray;
-  return is_stray || clock.whole_seconds ? time + offset : header;
-}
-
 bool BagObservations::Take(std::size_t stream, const BagMessage& message) {
   auto parsed = ParseMessage(plan_.topics[stream].kind, message, options_);
   if (!parsed) return false;
@@ -104,13 +95,13 @@ bool BagObservations::IsOfFrame(std::size_t stream, const RosHeader& header) {
 
 void BagObservations::TakeMessage(std::size_t stream, double time, RosLaserScan& scan) {
   if (!IsOfFrame(stream, scan.header)) return;
-  const double stamp = StampOf(stream, time, scan.header.stamp);
+  const double stamp = plan_.StampOf(stream, time, scan.header.stamp);
   mender_.Add(Convert(std::move(scan), stamp, plan_.topics[stream].scanner), stream);
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time, RosPointCloud& cloud) {
   if (!IsOfFrame(stream, cloud.header)) return;
-  const double stamp = StampOf(stream, time, cloud.header.stamp);
+  const double stamp = plan_.StampOf(stream, time, cloud.header.stamp);
   CloudScanner& lidar = lidars_[plan_.topics[stream].scanner];
   mender_.Add(lidar.Cut(std::move(cloud), stamp, motion_), stream);
 }
@@ -121,33 +112,27 @@ void BagObservations::AddOdometry(std::size_t stream, const OdometryReading& rea
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time, const RosOdometry& odometry) {
-  AddOdometry(stream, {StampOf(stream, time, odometry.header.stamp),
-                       SeenFromAbove(odometry.T_frame_child).T_robot_laser});
+  AddOdometry(stream, plan_.ReadingOf(stream, time, odometry));
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time, const RosImu& imu) {
-  const AccelerationReading reading{StampOf(stream, time, imu.header.stamp),
-                                    plan_.R_robot_imu * imu.acceleration};
+  const AccelerationReading reading = plan_.ReadingOf(stream, time, imu);
   motion_.Add(reading);
   mender_.Add(reading, stream);
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time,
                                   const RosFluidPressure& pressure) {
-  mender_.Add(PressureReading{StampOf(stream, time, pressure.header.stamp), pressure.pressure_pa},
-              stream);
+  mender_.Add(
+      PressureReading{plan_.StampOf(stream, time, pressure.header.stamp), pressure.pressure_pa},
+      stream);
 }
 
 void BagObservations::TakeMessage(std::size_t stream, double time,
                                   const std::vector<RosTransform>& transforms) {
-  if (plan_.odometry_frame.empty()) return;
   for (const RosTransform& transform : transforms) {
-    if (transform.header.frame_id != plan_.odometry_frame ||
-        transform.child_frame_id != plan_.robot_frame) {
-      continue;
-    }
-    AddOdometry(stream, {StampOf(stream, time, transform.header.stamp),
-                         SeenFromAbove(transform.T_frame_child).T_robot_laser});
+    const std::optional<OdometryReading> reading = plan_.ReadingOf(stream, time, transform);
+    if (reading) AddOdometry(stream, *reading);
   }
 }
 

@@ -68,7 +68,6 @@ class BagObservations {
  private:
   /// From the mender to the odometry to the order of what is handed out.
   void MoveOn();
-  double StampOf(std::size_t stream, double time, double header) const;
   /// False when the message is malformed.
   bool Take(std::size_t stream, const BagMessage& message);
   void TakeMessage(std::size_t stream, double time, RosLaserScan& scan);

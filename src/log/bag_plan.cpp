@@ -217,6 +217,35 @@ std::string FaultOf(TopicKind kind, const BagMessage& message) {
   return "PointCloud2 that " + FaultOfPointCloud(message.data, message.size, message.encoding);
 }
 
+double BagPlan::StampOf(std::size_t stream, double time, double header) const {
+  const TopicClock& clock = clocks[stream];
+  const double offset = clock.offset.value_or(clock_offset);
+  const bool same_clock = std::abs(offset - clock_offset) <= kClocksApart;
+  if (!(header > 0.0) || !same_clock) return time + clock_offset;
+  const bool is_stray = clock.is_steady && std::abs(header - time - offset) > kStray;
+  return is_stray || clock.whole_seconds ? time + offset : header;
+}
+
+OdometryReading BagPlan::ReadingOf(std::size_t stream, double time,
+                                   const RosOdometry& odometry) const {
+  return {StampOf(stream, time, odometry.header.stamp),
+          SeenFromAbove(odometry.T_frame_child).T_robot_laser};
+}
+
+std::optional<OdometryReading> BagPlan::ReadingOf(std::size_t stream, double time,
+                                                  const RosTransform& transform) const {
+  if (odometry_frame.empty() || transform.header.frame_id != odometry_frame ||
+      transform.child_frame_id != robot_frame) {
+    return std::nullopt;
+  }
+  return OdometryReading{StampOf(stream, time, transform.header.stamp),
+                         SeenFromAbove(transform.T_frame_child).T_robot_laser};
+}
+
+AccelerationReading BagPlan::ReadingOf(std::size_t stream, double time, const RosImu& imu) const {
+  return {StampOf(stream, time, imu.header.stamp), R_robot_imu * imu.acceleration};
+}
+
 bool IsRangeLimit(double range_max) {
   return range_max >= kLeastLimit && range_max < RangeLimitFinder::kAbsurdRange;
 }

@@ -18,6 +18,7 @@
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
 #include "masked_mapper/log/ros_point_cloud.hpp"
+#include "masked_mapper/sensor/observation.hpp"
 #include "ros_types.hpp"
 #include "scanner_evidence.hpp"
 
@@ -46,6 +47,14 @@ struct BagPlan {
   bool is_disordered = false;         ///< messages do not stand in the order of their recording
   double max_range = 0.0;             ///< m
   float no_return = 0.0F;             ///< m; 0: each scan's own range_max
+
+  /// s, by the clock that stamps the log, of a message of a stream that was recorded at `time`.
+  double StampOf(std::size_t stream, double time, double header) const;
+  OdometryReading ReadingOf(std::size_t stream, double time, const RosOdometry& odometry) const;
+  /// Empty when it is not the robot's odometry.
+  std::optional<OdometryReading> ReadingOf(std::size_t stream, double time,
+                                           const RosTransform& transform) const;
+  AccelerationReading ReadingOf(std::size_t stream, double time, const RosImu& imu) const;
 };
 
 /// Which topics to read, by their types and the user's options; none when there is no scanner among

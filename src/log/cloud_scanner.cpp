@@ -65,7 +65,7 @@ CloudScanner::CloudScanner(const LogOptions& options, const Eigen::Isometry3d& T
                            float max_range)
     : options_(options), T_robot_lidar_(T_robot_lidar), max_range_(max_range) {}
 
-LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion) {
+LevelledCloud CloudScanner::Level(RosPointCloud cloud, double stamp, const RobotMotion& motion) {
   CloudPoints& points = cloud.points;
   const auto too_near = [this](const CloudPoint& point) {
     return !(point.position.norm() >= static_cast<float>(options_.min_range));
@@ -76,14 +76,22 @@ LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion
     Straighten([&](double after) { return motion.Between(stamp, stamp + after); }, &points);
   }
   const Eigen::Vector3d lidar = T_robot_lidar_.translation();
-  const Ground ground = ground_.Find(points, lidar, motion.Up());
-  const Eigen::Isometry3d T_level_robot = ground.T_level_robot();
+  ground_ = finder_.Find(points, lidar, motion.Up());
+  const Eigen::Isometry3d T_level_robot = ground_.T_level_robot();
   Move(T_level_robot, &points);
-  const Eigen::Vector3d lidar_in_level = T_level_robot * lidar;
-  const WallBand band = BandBetween(ground, lidar_in_level.z(), {});
-  LaserScan scan = CutToScan(points, lidar_in_level, band, max_range_);
+  LevelledCloud levelled;
+  levelled.log_stamp = cloud.header.stamp > 0.0 ? cloud.header.stamp : stamp;
+  levelled.points = std::move(points);
+  levelled.lidar = T_level_robot * lidar;
+  return levelled;
+}
+
+LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion) {
+  const LevelledCloud levelled = Level(std::move(cloud), stamp, motion);
+  const WallBand band = BandBetween(ground_, levelled.lidar.z(), {});
+  LaserScan scan = CutToScan(levelled.points, levelled.lidar, band, max_range_);
   scan.stamp = stamp;
-  scan.log_stamp = cloud.header.stamp > 0.0 ? cloud.header.stamp : stamp;
+  scan.log_stamp = levelled.log_stamp;
   if (!options_.read_ranges) scan.ranges.clear();
   return scan;
 }

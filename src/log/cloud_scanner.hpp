@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_point_cloud.hpp"
 #include "masked_mapper/sensor/ground.hpp"
@@ -37,14 +38,16 @@ class CloudScanner {
  public:
   CloudScanner(const LogOptions& options, const Eigen::Isometry3d& T_robot_lidar, float max_range);
 
-  /// `stamp` is that of the cloud in the clock of the log.
+  /// `stamp` is that of the cloud in the clock of the log, as below.
+  LevelledCloud Level(RosPointCloud cloud, double stamp, const RobotMotion& motion);
   LaserScan Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion);
 
  private:
   const LogOptions& options_;
   Eigen::Isometry3d T_robot_lidar_;
   float max_range_;
-  GroundFinder ground_;
+  GroundFinder finder_;
+  Ground ground_;  ///< under the last cloud
 };
 
 }  // namespace masked_mapper
