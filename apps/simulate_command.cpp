@@ -28,6 +28,7 @@ struct SimulateArguments {
   double length_m = 0.0;
   std::vector<std::string> visits;
   std::string lidar = "2d";
+  double lidar_rate_hz = 0.0;
   bool perfect = false;
   bool floor_labels = false;
   bool without_pressure = false;
@@ -79,6 +80,7 @@ void ChooseLidar(const SimulateArguments& arguments, SimulationOptions* options)
                      " is text, which has no word for clouds; name it .bag or .mcap");
   }
   options->space_lidar = OptionsOf(*model);
+  if (arguments.lidar_rate_hz > 0.0) options->space_lidar->rate = arguments.lidar_rate_hz;
 }
 
 int RunSimulate(const SimulateArguments& arguments) {
@@ -159,6 +161,12 @@ void AddSimulateCommand(CLI::App& program, Run& run) {
                    "2d, or a 3D one, whose clouds need a bag: vlp16, os1-32, mid360")
       ->capture_default_str()
       ->type_name("MODEL");
+  command
+      ->add_option("--lidar-rate", arguments->lidar_rate_hz,
+                   "record so many clouds of a 3D lidar a second, Hz; 0: all")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str()
+      ->type_name("HZ");
   command->add_flag("--perfect", arguments->perfect, "no noise, no drift, no people");
   command->add_flag("--floor-labels", arguments->floor_labels,
                     "write FLOOR lines, as an elevator's interface would");

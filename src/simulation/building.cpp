@@ -56,6 +56,16 @@ void CheckFloor(const Building& building, const FloorPlan& floor) {
       Fail(building, where + "a wall reaches beyond 10 km");
     }
   }
+  for (const Overhead& block : floor.overhead) {
+    if (!IsPosition(block.T_building_block.Translation()) ||
+        !std::isfinite(block.T_building_block.theta)) {
+      Fail(building, where + "something overhead lies beyond 10 km");
+    }
+    if (!(block.length > 0.0 && block.length <= 1000.0 && block.width > 0.0 &&
+          block.width <= 1000.0 && block.low > 0.0 && block.low < block.high)) {
+      Fail(building, where + "what is overhead has an extent, and hangs above the floor");
+    }
+  }
   for (const Passage& passage : floor.passages) {
     if (passage.from >= floor.way_points.size() || passage.to >= floor.way_points.size() ||
         passage.from == passage.to) {

@@ -61,6 +61,15 @@ void AppendFloor(const Building& building, std::size_t f, std::string& text) {
     Append(text, segment.b);
     text += "\n";
   }
+  for (const Overhead& block : floor.overhead) {
+    text += "overhead";
+    Append(text, block.T_building_block.Translation());
+    Append(text, RadToDeg(block.T_building_block.theta));
+    for (const double metres : {block.length, block.width, block.low, block.high}) {
+      Append(text, metres);
+    }
+    text += "\n";
+  }
   for (const WayPoint& way_point : floor.way_points) {
     text += "point " + way_point.name;
     Append(text, way_point.position);

@@ -133,6 +133,7 @@ class BuildingReader {
     if (item == "building") return ReadName();
     if (item == "floor") return ReadFloor();
     if (item == "box") return ReadBox();
+    if (item == "overhead") return ReadOverhead();
     if (item == "point") return ReadPoint();
     if (item == "corridor") return ReadPassages(true);
     if (item == "way") return ReadPassages(false);
@@ -145,9 +146,10 @@ class BuildingReader {
     if (item == "visit") return ReadVisits();
     if (item == "rest") return ReadRest();
     Fail("unknown item '" + item.substr(0, 40) + "'" +
-         DidYouMean(item.substr(0, 40), {"building", "floor", "wall", "glass", "door", "furniture",
-                                         "box", "point", "corridor", "way", "elevator", "stairs",
-                                         "stop", "foot", "head", "start", "visit", "rest"}));
+         DidYouMean(item.substr(0, 40),
+                    {"building", "floor", "wall", "glass", "door", "furniture", "box", "overhead",
+                     "point", "corridor", "way", "elevator", "stairs", "stop", "foot", "head",
+                     "start", "visit", "rest"}));
   }
 
   void ReadName() {
@@ -191,6 +193,13 @@ class BuildingReader {
     for (std::size_t e = 0; e < 4; ++e) {
       AddSegment({corners[e], corners[(e + 1) % 4], Surface::kFurniture});
     }
+  }
+
+  void ReadOverhead() {
+    Expect(words_.size() == 8, "overhead X Y THETA_DEG LENGTH WIDTH LOW HIGH");
+    if (++segments_ > kMaxSegments) Fail("more than 2000000 segments");
+    OnFloor().overhead.push_back(
+        {{Number(1), Number(2), DegToRad(Number(3))}, Number(4), Number(5), Number(6), Number(7)});
   }
 
   void ReadPoint() {

@@ -14,6 +14,9 @@ constexpr double kRoomGap = 0.12;     // m, the wall between two rooms
 constexpr double kDeadEndRoom = 1.0;  // m, between the last way-point of a dead end and its wall
 constexpr double kDoorGap = 0.62;     // m, between furniture and a way
 constexpr double kSamePlace = 0.05;   // m
+constexpr double kTableTop = 0.74;    // m
+constexpr double kLintel = 2.05;      // m, over open doors
+constexpr double kHighest = 10.0;     // m, up to any ceiling
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -383,6 +386,10 @@ void FloorPlanner::DrawRoomFront(const Room& room, const SideStyle& style, bool 
   const double x0 = room.door_x - 0.5 * room.door_width;
   const double x1 = room.door_x + 0.5 * room.door_width;
   opening(x0, x1);
+  if (room.open) {
+    HangBlock(T, {x0, room.side * (half + 0.01)}, {x1, room.side * (room.v0 - 0.01)}, kLintel,
+              kHighest);
+  }
   corridor.doors[room.side > 0.0 ? 0 : 1].emplace_back(x0 - 0.25, x1 + 0.25);
   if (!room.open) {
     const double v = half + std::min(style.recess, style.wall - 0.02);
@@ -476,10 +483,26 @@ bool FloorPlanner::PlaceBox(const Pose2& T_building_local, double x0, double y0,
   return true;
 }
 
+void FloorPlanner::HangBlock(const Pose2& T_building_local, const Eigen::Vector2d& from,
+                             const Eigen::Vector2d& to, double low, double high) {
+  const Eigen::Vector2d middle = T_building_local * Eigen::Vector2d(0.5 * (from + to));
+  floor_.overhead.push_back({{middle.x(), middle.y(), T_building_local.theta},
+                             std::abs(to.x() - from.x()),
+                             std::abs(to.y() - from.y()),
+                             low,
+                             high});
+}
+
 void FloorPlanner::FurnishRoom(const Room& room) {
   const Pose2& T = corridors_[room.corridor].T_building_corridor;
   const double width = room.x1 - room.x0;
   const double depth = room.v1 - room.v0;
+  if (room.open && width > 2.4 && depth > 3.4) {
+    // Beyond where ways lead. Drawn without chance: rooms stay as they are without it.
+    const double x = 0.5 * (room.x0 + room.x1);
+    HangBlock(T, {x - 0.8, room.side * (room.v1 - 0.9)}, {x + 0.8, room.side * (room.v1 - 0.2)},
+              kTableTop - 0.04, kTableTop);
+  }
   const auto place = [&](double x0, double v0, double x1, double v1) {
     const bool at_door = x0 < room.door_x + 0.8 && x1 > room.door_x - 0.8 && v0 < room.v0 + 1.1;
     if (at_door) return;
@@ -539,6 +562,7 @@ void FloorPlanner::FurnishCorridor(std::size_t corridor_index) {
       const double reach = std::min(post, 0.3);
       PlaceBox(T, x - 0.06, half - reach, x + 0.06, half, 0.7, Surface::kWall);
       PlaceBox(T, x - 0.06, -half, x + 0.06, -half + reach, 0.7, Surface::kWall);
+      HangBlock(T, {x - 0.06, -half}, {x + 0.06, half}, kLintel, kHighest);
       corridor.doors[0].emplace_back(x - 0.4, x + 0.4);
       corridor.doors[1].emplace_back(x - 0.4, x + 0.4);
     }

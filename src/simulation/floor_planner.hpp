@@ -126,6 +126,9 @@ class FloorPlanner {
   void DrawRoomFront(const Room& room, const SideStyle& style, bool pane);
   void VisitRooms();
   void FurnishRoom(const Room& room);
+  /// What hangs over a stretch of a corridor's frame, x along it.
+  void HangBlock(const Pose2& T_building_local, const Eigen::Vector2d& from,
+                 const Eigen::Vector2d& to, double low, double high);
   void FurnishCorridor(std::size_t corridor_index);
   void FurnishHalls();
   std::size_t AddStation(Corridor& corridor, double along, const std::string& prefix);

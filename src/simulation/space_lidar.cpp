@@ -5,20 +5,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "masked_mapper/geometry/angle.hpp"
 
 namespace masked_mapper {
 namespace {
 
-constexpr double kCeiling = 2.7;         // m, where storeys are not lower
-constexpr double kBetweenStoreys = 0.3;  // m of concrete
-constexpr double kDoorHeight = 2.05;     // m
-constexpr double kLintel = 2.1;          // m, over the door of a cab
-constexpr double kHips = 0.85;           // m
-constexpr double kHead = 1.75;           // m
-constexpr double kBodyRadius = 0.2;      // m
-constexpr std::array<double, 4> kFurniture = {0.74, 1.2, 1.9, 2.2};  // m
+constexpr double kHips = 0.85;       // m
+constexpr double kHead = 1.75;       // m
+constexpr double kBodyRadius = 0.2;  // m
 
 struct Named {
   const char* name;
@@ -43,25 +39,6 @@ constexpr int kPointsOfMid360 = 20000;
 constexpr double kLowestOfMid360_deg = -7.0;
 constexpr double kHighestOfMid360_deg = 52.0;
 
-std::vector<Upright> UprightsOf(const std::vector<Segment>& segments, double ceiling) {
-  std::vector<Upright> uprights;
-  std::size_t piece = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Segment& segment = segments[i];
-    double high = ceiling;
-    if (segment.surface == Surface::kDoor) high = std::min(kDoorHeight, ceiling);
-    if (segment.surface == Surface::kFurniture) {
-      // The sides of one piece stand together.
-      const bool goes_on = i > 0 && segments[i - 1].surface == Surface::kFurniture &&
-                           (segments[i - 1].b - segment.a).norm() < 1e-6;
-      piece += goes_on ? 0 : 1;
-      high = std::min(kFurniture[piece % kFurniture.size()], ceiling);
-    }
-    uprights.push_back({segment, 0.0, high});
-  }
-  return uprights;
-}
-
 /// Where a ray over the ground enters a circle.
 std::optional<double> CircleRange(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                                   const Eigen::Vector2d& centre, double radius) {
@@ -71,6 +48,33 @@ std::optional<double> CircleRange(const Eigen::Vector2d& origin, const Eigen::Ve
   const double half = radius * radius - aside * aside;
   if (half < 0.0 || along < radius) return std::nullopt;
   return along - std::sqrt(half);
+}
+
+/// Between which ranges over the ground a ray is below a block, or above.
+std::optional<std::pair<double, double>> StretchOver(const Overhead& block,
+                                                     const Eigen::Vector2d& origin,
+                                                     const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d to = block.T_building_block.Translation() - origin;
+  const double reach = 0.5 * std::hypot(block.length, block.width);
+  if (std::abs(direction.x() * to.y() - direction.y() * to.x()) > reach) return std::nullopt;
+  const Pose2 T_block_building = Inverse(block.T_building_block);
+  const Eigen::Vector2d from = T_block_building * origin;
+  const Eigen::Vector2d along = T_block_building * Eigen::Vector2d(origin + direction) - from;
+  double enter = 0.0;
+  double leave = std::numeric_limits<double>::infinity();
+  for (const int axis : {0, 1}) {
+    const double half = 0.5 * (axis == 0 ? block.length : block.width);
+    const double a = (-half - from(axis)) / along(axis);
+    const double b = (half - from(axis)) / along(axis);
+    if (along(axis) == 0.0) {
+      if (std::abs(from(axis)) > half) return std::nullopt;
+      continue;
+    }
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  if (!(enter < leave)) return std::nullopt;
+  return {{enter, leave}};
 }
 
 float BrightnessOf(Surface surface) {
@@ -129,31 +133,16 @@ SpaceLidar::SpaceLidar(const Building& building, const SpaceLidarOptions& option
       people_(building, noise.people, seed) {
   if (noise.sigma == 0.0) options_.sigma = 0.0;
   for (std::size_t f = 0; f < building.floors.size(); ++f) {
-    double ceiling = kCeiling;
-    if (f + 1 < building.floors.size()) {
-      const double storey = building.floors[f + 1].elevation - building.floors[f].elevation;
-      ceiling = std::min(ceiling, std::max(storey - kBetweenStoreys, 1.0));
-    }
-    ceilings_.push_back(ceiling);
-    std::vector<Segment> segments = StandingSegments(building, f);
-    standing_.push_back(UprightsOf(segments, ceiling));
-    for (const Elevator& elevator : building.elevators) {
-      for (const Landing& landing : elevator.landings) {
-        if (landing.floor != f || !(ceiling > kLintel)) continue;
-        for (const Segment& leaf : CabDoor(elevator, 0.0)) {
-          segments.push_back(leaf);
-          segments.back().surface = Surface::kWall;
-          standing_.back().push_back({segments.back(), kLintel, ceiling});
-        }
-      }
-    }
+    surfaces_.push_back(SurfacesOf(building, f));
+    std::vector<Segment> segments;
+    for (const Upright& upright : surfaces_.back().standing) segments.push_back(upright.segment);
     index_.emplace_back(std::move(segments));
   }
 }
 
 std::vector<SpaceLidar::Ray> SpaceLidar::Rays() {
   std::vector<Ray> rays;
-  const double period = 1.0 / options_.rate;
+  const double period = 1.0 / options_.turn_rate;
   // Ouster's times are whole numbers after the first ray, others' lie before the last.
   const double begin = options_.layout == CloudLayout::kOuster ? 0.0 : -period;
   if (options_.model == SpaceLidarModel::kMid360) {
@@ -185,10 +174,11 @@ void SpaceLidar::Cross(const Eigen::Vector2d& origin, const Eigen::Vector2d& dir
                        std::size_t floor, const std::vector<Segment>& doors,
                        const std::vector<Leg>& legs) {
   crossings_.clear();
-  const double ceiling = ceilings_[floor];
+  const double ceiling = surfaces_[floor].ceiling;
   for (const Segment& door : doors) {
     const auto range = RayRange(origin, direction, door, 0.0);
-    if (range) crossings_.push_back({*range, 0.0, std::min(kLintel, ceiling), Surface::kDoor, 1.0});
+    if (range)
+      crossings_.push_back({*range, 0.0, std::min(kCabDoorHeight, ceiling), Surface::kDoor, 1.0});
   }
   for (std::size_t i = 0; i < legs.size(); ++i) {
     const auto range = CircleRange(origin, direction, legs[i].centre, legs[i].radius);
@@ -200,13 +190,20 @@ void SpaceLidar::Cross(const Eigen::Vector2d& origin, const Eigen::Vector2d& dir
   }
   double from = 0.0;
   while (const auto hit = index_[floor].Cast(origin, direction, from, options_.max_range)) {
-    const Upright& upright = standing_[floor][hit->segment];
+    const Upright& upright = surfaces_[floor].standing[hit->segment];
     const Eigen::Vector2d edge = (upright.segment.b - upright.segment.a).normalized();
     const double cosine = direction.x() * edge.y() - direction.y() * edge.x();
     const Surface surface = upright.segment.surface;
     crossings_.push_back({hit->range, upright.low, upright.high, surface, cosine});
     if (surface == Surface::kWall && upright.low <= 0.0) break;
     from = hit->range + 1e-6;
+  }
+  flats_.clear();
+  for (const Overhead& block : surfaces_[floor].overhead) {
+    const auto over = StretchOver(block, origin, direction);
+    if (!over || !(over->first < options_.max_range)) continue;
+    flats_.push_back({over->first, over->second, block.low});
+    flats_.push_back({over->first, over->second, block.high});
   }
   std::sort(crossings_.begin(), crossings_.end(),
             [](const Crossing& a, const Crossing& b) { return a.range < b.range; });
@@ -224,6 +221,12 @@ bool SpaceLidar::Return(const Ray& ray, double ceiling, CloudPoint* point) {
   } else if (ray.slope > 0.0) {
     range = (ceiling - height) / ray.slope;
     brightness = kBrightnessOfCeiling;
+  }
+  for (const Flat& flat : flats_) {
+    const double reached = (flat.height - height) / ray.slope;
+    if (!(reached > flat.from && reached < flat.to && reached < range)) continue;
+    range = reached;
+    brightness = BrightnessOf(Surface::kFurniture);
   }
   for (const Crossing& crossing : crossings_) {
     if (crossing.range >= range) break;
@@ -279,7 +282,7 @@ CloudReading SpaceLidar::Sweep(double time, const std::function<RobotState(doubl
       turn_before = ray.turn;
     }
     CloudPoint point;
-    if (Return(ray, ceilings_[now.floor], &point)) reading.points.push_back(point);
+    if (Return(ray, surfaces_[now.floor].ceiling, &point)) reading.points.push_back(point);
   }
   return reading;
 }

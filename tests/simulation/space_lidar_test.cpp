@@ -99,20 +99,28 @@ TEST(SpaceLidarTest, ATurningRobotBendsTheSweepByItsTimes) {
   }
 }
 
-TEST(SpaceLidarTest, FurnitureEndsBelowTheCeilingAndLintelsHangFromIt) {
-  const Building office = LoadBuilding("office", 1);
-  const SpaceLidar lidar(office, OptionsOf(SpaceLidarModel::kVlp16), LidarNoise::None(), 1);
-  std::size_t low = 0;
-  std::size_t lintels = 0;
-  for (std::size_t floor = 0; floor < office.floors.size(); ++floor) {
-    for (const Upright& upright : lidar.Standing(floor)) {
-      low += upright.high < lidar.Ceiling(floor) ? 1 : 0;
-      lintels += upright.low > 0.0 ? 1 : 0;
-      EXPECT_LT(upright.low, upright.high);
-    }
+TEST(SpaceLidarTest, SeesTableTopsFromBelowAndPassesUnderThem) {
+  Building hall = Hall();
+  // Ahead of the robot, above its lidar.
+  hall.floors[0].overhead.push_back({{3.0, 0.0, 0.0}, 1.0, 1.6, 0.75, 0.8});
+  SpaceLidarOptions options = OptionsOf(SpaceLidarModel::kMid360);
+  SpaceLidar lidar(hall, options, LidarNoise::None(), 1);
+  const CloudReading cloud = lidar.Sweep(1.0, Standing);
+  std::size_t below = 0;
+  std::size_t edge = 0;
+  std::size_t beyond = 0;
+  for (const CloudPoint& point : cloud.points) {
+    const Eigen::Vector3d p = cloud.T_robot_lidar * point.position.cast<double>();
+    const bool under = p.x() > 2.5 && p.x() < 3.5 && std::abs(p.y()) < 0.8;
+    below += under && std::abs(p.z() - 0.75) < 1e-3 ? 1 : 0;
+    edge += std::abs(p.x() - 2.5) < 1e-3 && std::abs(p.y()) < 0.8 && p.z() < 0.801 ? 1 : 0;
+    beyond += p.x() > 4.99 && std::abs(p.y()) < 1.0 && p.z() < 0.7 ? 1 : 0;
+    // Nothing comes from within the block.
+    EXPECT_FALSE(under && p.z() > 0.751 && p.z() < 0.799 && p.x() > 2.501);
   }
-  EXPECT_GT(low, 0U);
-  EXPECT_GT(lintels, 0U);
+  EXPECT_GT(below, 10U);
+  EXPECT_GT(edge, 10U);
+  EXPECT_GT(beyond, 10U);
 }
 
 TEST(SpaceLidarTest, NamesAreThoseOfTheCommandLine) {

@@ -23,6 +23,16 @@ struct Segment {
   Surface surface = Surface::kWall;
 };
 
+/// An upright block in the air, as a table's top or a lintel: 2D scanners look past it, and what is
+/// lower than it may drive below.
+struct Overhead {
+  Pose2 T_building_block;  ///< of its centre
+  double length = 0.0;     ///< m, along x
+  double width = 0.0;      ///< m, along y
+  double low = 0.0;        ///< m above the floor
+  double high = 0.0;       ///< m; what lies above the ceiling is not there
+};
+
 struct WayPoint {
   std::string name;  ///< unique on its floor; letters, digits, `_`, `.`, `-`
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
@@ -39,6 +49,7 @@ struct FloorPlan {
   std::string label;
   double elevation = 0.0;         ///< m
   std::vector<Segment> segments;  ///< without the cabs of elevators
+  std::vector<Overhead> overhead;
   std::vector<WayPoint> way_points;
   std::vector<Passage> passages;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A 3D lidar in a simulated building. The plan's segments get heights: walls and glass reach the
-// ceiling, doors a lintel, furniture is desks, cupboards and shelves; floors and ceilings are flat,
-// people have bodies. The robot moves while a sweep is taken, and every return has its own time.
+// A 3D lidar in a simulated building, among surfaces that have heights and people who have bodies.
+// The robot moves while a sweep is taken, and every return has its own time.
 #pragma once
 
 #include <functional>
@@ -11,6 +10,7 @@
 
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/simulation/lidar_simulation.hpp"
+#include "masked_mapper/simulation/space_surfaces.hpp"
 
 namespace masked_mapper {
 
@@ -22,7 +22,8 @@ std::vector<std::string> SpaceLidarNames();
 /// What is public of such a lidar, in its usual mode.
 struct SpaceLidarOptions {
   SpaceLidarModel model = SpaceLidarModel::kVlp16;
-  double rate = 10.0;                              ///< Hz, of sweeps
+  double turn_rate = 10.0;                         ///< Hz, in which a sweep is taken
+  double rate = 10.0;                              ///< Hz, of the sweeps that are recorded
   double max_range = 100.0;                        ///< m
   double min_range = 0.3;                          ///< m
   double sigma = 0.02;                             ///< m
@@ -30,13 +31,6 @@ struct SpaceLidarOptions {
   CloudLayout layout = CloudLayout::kVelodyne;
 };
 SpaceLidarOptions OptionsOf(SpaceLidarModel model);
-
-/// What stands upright between two heights above the floor, m.
-struct Upright {
-  Segment segment;
-  double low = 0.0;
-  double high = 0.0;
-};
 
 class SpaceLidar {
  public:
@@ -49,11 +43,6 @@ class SpaceLidar {
   /// there where the layout counts times from its stamp; `state_at` tells where the robot is. Stamp
   /// and odometry are left to the caller.
   CloudReading Sweep(double time, const std::function<RobotState(double)>& state_at);
-
-  /// m above each floor.
-  double Ceiling(std::size_t floor) const { return ceilings_[floor]; }
-  /// What stands on a floor, people and cab doors aside.
-  const std::vector<Upright>& Standing(std::size_t floor) const { return standing_[floor]; }
 
  private:
   struct Ray {
@@ -69,6 +58,13 @@ class SpaceLidar {
     double cosine = 1.0;
   };
 
+  /// A level surface that the half-plane meets.
+  struct Flat {
+    double from = 0.0;  ///< m, over the ground
+    double to = 0.0;
+    double height = 0.0;  ///< m above the floor
+  };
+
   /// The rays of one sweep in the order in which they are sent.
   std::vector<Ray> Rays();
   /// All that a vertical half-plane from the lidar meets, nearest first, up to what hides the rest.
@@ -81,10 +77,10 @@ class SpaceLidar {
   LidarNoise noise_;
   RandomGenerator random_;
   People people_;
-  std::vector<std::vector<Upright>> standing_;
+  std::vector<SpaceSurfaces> surfaces_;  ///< by floor
   std::vector<SegmentIndex> index_;
-  std::vector<double> ceilings_;
   std::vector<Crossing> crossings_;
+  std::vector<Flat> flats_;
   std::uint64_t sent_ = 0;  ///< rays of all sweeps so far
 };
 
