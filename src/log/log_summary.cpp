@@ -180,4 +180,23 @@ LogSummary Summarise(LogSource& source) {
   }
 }
 
+std::vector<std::string> WarningsOf(const LogStatistics& log) {
+  std::vector<std::string> warnings;
+  if (log.bad_lines > 0) {
+    warnings.push_back(std::to_string(log.bad_lines) +
+                       " bad lines skipped, the first: " + log.first_bad_line);
+  }
+  if (log.truncated) {
+    warnings.emplace_back("the file is cut off; what came before the cut was used");
+  }
+  if (log.stamp_jumps > 0) {
+    warnings.push_back(std::to_string(log.stamp_jumps) +
+                       " stamps that step backwards or wrap were mended");
+  }
+  if (log.empty_scans > 0) {
+    warnings.push_back(std::to_string(log.empty_scans) + " scans without a single return");
+  }
+  return warnings;
+}
+
 }  // namespace masked_mapper

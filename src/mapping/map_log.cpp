@@ -10,6 +10,7 @@
 
 #include "masked_mapper/joining/floor_joining.hpp"
 #include "masked_mapper/joining/visit_tying.hpp"
+#include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/masked_mapper.hpp"
@@ -19,21 +20,6 @@
 
 namespace masked_mapper {
 namespace {
-
-/// What was skipped or mended, said once.
-void WarnOfTheLog(const std::string& path, const LogStatistics& log, BuildingMap& result) {
-  const auto warn = [&](const std::string& text) { result.warnings.push_back(path + ": " + text); };
-  if (log.bad_lines > 0) {
-    warn(std::to_string(log.bad_lines) + " bad lines skipped, the first: " + log.first_bad_line);
-  }
-  if (log.truncated) warn("the file is cut off; what came before the cut was used");
-  if (log.stamp_jumps > 0) {
-    warn(std::to_string(log.stamp_jumps) + " stamps that step backwards or wrap were mended");
-  }
-  if (log.empty_scans > 0) {
-    warn(std::to_string(log.empty_scans) + " scans without a single return");
-  }
-}
 
 // Asked once, where the level was first reached.
 std::string OpenQuestion(const FloorTimeline& floors, const FloorChange& change) {
@@ -143,7 +129,9 @@ class LogDrive {
     for (const std::string& warning : survey_.warnings) {
       result.warnings.push_back(path_ + ": " + warning);
     }
-    WarnOfTheLog(path_, result.log, result);
+    for (const std::string& warning : WarningsOf(result.log)) {
+      result.warnings.push_back(path_ + ": " + warning);
+    }
     for (const std::string& warning : result.warnings) progress_.Warn(warning);
     return result;
   }

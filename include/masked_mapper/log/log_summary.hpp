@@ -45,4 +45,7 @@ struct LogSummary {
 /// Reads the log from end to end; once more when all of it says otherwise than its beginning.
 LogSummary Summarise(LogSource& source);
 
+/// What was skipped or mended, and what has nothing to say, a line each for people.
+std::vector<std::string> WarningsOf(const LogStatistics& log);
+
 }  // namespace masked_mapper
