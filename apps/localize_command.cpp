@@ -13,10 +13,12 @@
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/localization/localizer.hpp"
 #include "masked_mapper/log/log_source.hpp"
+#include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/log/recordings.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/mapping/log_survey.hpp"
+#include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/options/option_table.hpp"
-#include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "option_flags.hpp"
 #include "progress_bar.hpp"
@@ -55,55 +57,39 @@ LocalizerOptions LocalizerOptionsOf(const Options& options) {
   return localizer;
 }
 
-/// The stamps of a second log may lie before those of the first, which no clock could have given.
-void Shift(double seconds, Observation& observation) {
-  std::visit([&](auto& reading) { reading.stamp += seconds; }, observation);
-}
-
 class LocalizeRun {
  public:
   LocalizeRun(const LocalizeArguments& arguments, const BuildingMap& map, Localizer& localizer,
               ProgressBar& progress)
       : arguments_(arguments), map_(map), localizer_(localizer), progress_(progress) {}
 
-  void Drive(const LogSource& source) {
-    const std::unique_ptr<LogReader> log = source.Read();
-    bool is_first = true;
-    double shift_s = 0.0;
-    while (std::optional<Observation> observation = log->Next()) {
-      constexpr double kBetweenLogs = 3600.0;  // s; nobody knows where the robot was meanwhile
-      if (is_first && has_stamp_) shift_s = newest_ + kBetweenLogs - Stamp(*observation);
-      is_first = false;
-      Shift(shift_s, *observation);
-      newest_ = Stamp(*observation);
-      has_stamp_ = true;
+  /// As `map` reads it: surveyed, its wheels mended, its scans straightened.
+  void Drive(LogSource& source, const MappingOptions& options) {
+    progress_.Stage("reading");
+    const LogSurvey survey = SurveyLog(source, options);
+    const MotionSource motion = SettleMotionSource(source.path(), options.motion, survey);
+    for (const SensorFinding& finding : survey.findings) Warn(source, TextOf(finding));
+    for (const std::string& warning : survey.warnings) Warn(source, warning);
+    progress_.Stage("localizing");
+    const std::unique_ptr<LogReader> log =
+        ReadStraightened(source, {survey.sweep_s_per_rad, motion != MotionSource::kScans});
+    localizer_.BeginLog(motion);
+    while (const std::optional<Observation> observation = log->Next()) {
       if (!localizer_.Observe(*observation)) continue;
       progress_.Progress(log->Progress(), localizer_.result().scans.size());
       if (arguments_.poses) {
         std::cout << PoseLine(map_, localizer_.result().scans.back()) << std::endl;
       }
     }
-    if (log->Statistics().scans == 0) {
-      throw InputError(source.path() + ": not one valid laser scan in it");
-    }
-    Warn(source.path(), log->Statistics());
+    for (const std::string& warning : WarningsOf(log->Statistics())) Warn(source, warning);
   }
 
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  void Warn(const std::string& path, const LogStatistics& log) {
-    const auto warn = [&](const std::string& text) {
-      warnings_.push_back(path + ": " + text);
-      progress_.Warn(warnings_.back());
-    };
-    if (log.bad_lines > 0) {
-      warn(std::to_string(log.bad_lines) + " bad lines skipped, the first: " + log.first_bad_line);
-    }
-    if (log.truncated) warn("the log is cut off; what came before the cut was used");
-    if (log.stamp_jumps > 0) {
-      warn(std::to_string(log.stamp_jumps) + " stamps that step backwards or wrap were mended");
-    }
+  void Warn(const LogSource& source, const std::string& text) {
+    warnings_.push_back(source.path() + ": " + text);
+    progress_.Warn(warnings_.back());
   }
 
   const LocalizeArguments& arguments_;
@@ -111,8 +97,6 @@ class LocalizeRun {
   Localizer& localizer_;
   ProgressBar& progress_;
   std::vector<std::string> warnings_;
-  double newest_ = 0.0;
-  bool has_stamp_ = false;
 };
 
 std::string Closing(const Localization& drive, const std::string& doubt, std::size_t changes) {
@@ -155,12 +139,10 @@ int RunLocalize(const LocalizeArguments& arguments) {
   Localizer localizer(saved.result, saved.origin.mask, LocalizerOptionsOf(options));
   LocalizeRun run(arguments, saved.result, localizer, progress);
   for (const std::vector<std::string>& files : recordings) {
-    progress.Stage("localizing");
-    if (files.size() == 1) {
-      run.Drive(LogSource(files.front(), options.mapping.log));
-    } else {
-      run.Drive(LogSource(files, options.mapping.log));
-    }
+    const bool is_one = files.size() == 1;
+    const auto source = is_one ? std::make_unique<LogSource>(files.front(), options.mapping.log)
+                               : std::make_unique<LogSource>(files, options.mapping.log);
+    run.Drive(*source, options.mapping);
   }
   const std::vector<MapChange> changes = localizer.Changes();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;

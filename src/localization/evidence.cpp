@@ -32,7 +32,7 @@ PatchFit FitOfFree(const Patch& patch, const SearchableFloor& floor, const Pose2
   }
   const auto count = static_cast<double>(patch.points_in_odom.size());
   if (walls >= kWallShare * count) return 0;
-  return seen >= kKnownShare * count && walls == 0 ? 100 : kMapSaysNothing;
+  return seen >= kKnownShare * count && walls == 0 ? kFreeAsSeen : kMapSaysNothing;
 }
 
 }  // namespace
@@ -43,9 +43,9 @@ PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_
   int known = 0;
   for (const Eigen::Vector2d& point : patch.points_in_odom) {
     const Eigen::Vector2d in_world = T_world_odom * point;
-    const double value = floor.fine().ValueAt(in_world);
-    if (value == 0.0 && !floor.IsSeen(in_world)) continue;
-    sum += value;
+    // Behind a wall that was seen from one side the map knows nothing.
+    if (!floor.IsSeen(in_world)) continue;
+    sum += floor.fine().ValueAt(in_world);
     ++known;
   }
   if (known < kKnownShare * static_cast<double>(patch.points_in_odom.size())) {
@@ -54,12 +54,12 @@ PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_
   return static_cast<PatchFit>(100.0 * sum / known);
 }
 
-void Tally::Add(const Patch& patch, PatchFit fit) {
-  if (fit == kMapSaysNothing) return;
-  if (fit < kFits) {
-    ++contradicting;
-  } else if (!patch.is_free) {
+void Tally::Add(PatchFit fit) {
+  if (fit == kMapSaysNothing || fit == kFreeAsSeen) return;
+  if (fit >= kFits) {
     ++agreeing;
+  } else {
+    ++contradicting;
   }
 }
 
@@ -69,19 +69,72 @@ double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& op
          tally.contradicting * std::log((1.0 - right) / (1.0 - agrees_wrong));
 }
 
+namespace {
+
+/// What patches say of two places.
+struct PairTally {
+  int both = 0;       ///< agree at both
+  int first = 0;      ///< at the first, not at the second
+  int second = 0;     ///< at the second, not at the first
+  int neither = 0;    ///< at none of the two
+  Tally first_only;   ///< of those of which the map says nothing at the second
+  Tally second_only;  ///< nothing at the first
+
+  void Add(PatchFit one, PatchFit other);
+  PairTally Swapped() const { return {both, second, first, neither, second_only, first_only}; }
+};
+
+void PairTally::Add(PatchFit one, PatchFit other) {
+  if (other == kMapSaysNothing) return first_only.Add(one);
+  if (one == kMapSaysNothing) return second_only.Add(other);
+  if (one == kFreeAsSeen && other == kFreeAsSeen) return;
+  // What fits both about as well tells nothing, wherever the line between them is drawn.
+  const bool is_clear = std::abs(int{one} - int{other}) >= kClear;
+  const bool agrees_first = (is_clear ? one : std::max(one, other)) >= kFits;
+  const bool agrees_second = (is_clear ? other : std::max(one, other)) >= kFits;
+  int& count = agrees_first ? (agrees_second ? both : first) : (agrees_second ? second : neither);
+  ++count;
+}
+
+double Nats(const Tally& tally, double share_agreeing) {
+  return tally.agreeing * std::log(share_agreeing) +
+         tally.contradicting * std::log(1.0 - share_agreeing);
+}
+
+double LogSum(double a, double b) {
+  const double most = std::max(a, b);
+  return most + std::log(std::exp(a - most) + std::exp(b - most));
+}
+
+// How likely the patches are when the first place is right. None of the three ways in which the
+// second may come by what it shows is likelier than the others beforehand.
+double NatsOfFirst(const PairTally& tally, const EvidenceOptions& options) {
+  const double right = options.agrees_in_place;
+  const Tally at_first{tally.both + tally.first, tally.second + tally.neither};
+  const Tally at_second{tally.both + tally.second, tally.first + tally.neither};
+  const double first = Nats(at_first, right) + Nats(tally.first_only, right);
+  const double unrelated = first + Nats(at_second, options.agrees_elsewhere) +
+                           Nats(tally.second_only, options.agrees_elsewhere);
+  // Of copies, which of the two agrees is a question of its own.
+  const int different = tally.first + tally.second;
+  const double alike = Nats({tally.both, tally.neither}, right) + Nats(tally.first_only, right) +
+                       Nats(tally.second_only, right) +
+                       (tally.both + tally.neither) * std::log(1.0 - options.differs_in_copies) +
+                       different * std::log(options.differs_in_copies);
+  const double by_noise = alike + different * std::log(0.5);
+  const double told_apart = alike + tally.first * std::log(options.speaks_for_right) +
+                            tally.second * std::log(1.0 - options.speaks_for_right);
+  return LogSum(unrelated, LogSum(by_noise, told_apart));
+}
+
+}  // namespace
+
 double LeadOf(const std::vector<PatchFit>& one, const std::vector<PatchFit>& other,
               const EvidenceOptions& options) {
-  int ahead = 0;
-  int behind = 0;
+  PairTally tally;
   const std::size_t count = std::min(one.size(), other.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    if (one[i] == kMapSaysNothing || other[i] == kMapSaysNothing) continue;
-    if (one[i] >= other[i] + kClear) ++ahead;
-    if (other[i] >= one[i] + kClear) ++behind;
-  }
-  constexpr double kOfCopies = 0.5;
-  const double right = options.speaks_for_right;
-  return ahead * std::log(right / kOfCopies) + behind * std::log((1.0 - right) / kOfCopies);
+  for (std::size_t i = 0; i < count; ++i) tally.Add(one[i], other[i]);
+  return NatsOfFirst(tally, options) - NatsOfFirst(tally.Swapped(), options);
 }
 
 }  // namespace masked_mapper

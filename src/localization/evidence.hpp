@@ -2,10 +2,12 @@
 // How much what was seen speaks for a place: the one rule by which a place is believed, given up,
 // or held to be no better than another that looks alike.
 //
-// Each patch that was seen fits the map at a place so well, or the map says nothing there. In the
-// right place nearly all fit. Two rivals are told apart by the patches that fit the one clearly
-// better than the other: where one of them is right, nearly all of those speak for it; where they
-// are copies of each other (the floors of a tower), noise speaks for either alike. Evidence is
+// Each patch that was seen agrees with the map at a place, or does not, or the map says nothing
+// there. In the right place nearly all agree, in one that looks alike many. Of two rivals, either
+// what one of them shows has nothing to do with the other; or the one is a copy of the other (the
+// floors of a tower): then what agrees with the one nearly always agrees with the other. Patches
+// that do not are noise, which speaks for either copy alike, or they are what tells the two apart,
+// and then nearly all speak for the one. Which of these it is, is weighed along. Evidence is
 // counted in nats, the logarithm of how many times likelier.
 #pragma once
 
@@ -18,17 +20,19 @@
 namespace masked_mapper {
 
 struct EvidenceOptions {
-  double agrees_in_place = 0.8;   ///< share of patches that agree, in the right place
-  double agrees_elsewhere = 0.5;  ///< in a wrong one that looks alike
-  double agrees_anywhere = 0.35;  ///< in a wrong one as good as any other
-  double believed_nats = 9.2;     ///< of a place against all others: ten thousand to one
-  double speaks_for_right = 0.9;  ///< share of the patches that tell two places apart
-  double told_apart_nats = 7.0;   ///< of a place against one other: a thousand to one
+  double agrees_in_place = 0.8;    ///< share of patches that agree, in the right place
+  double agrees_elsewhere = 0.5;   ///< in a wrong one that looks alike
+  double agrees_anywhere = 0.35;   ///< in a wrong one as good as any other
+  double believed_nats = 9.2;      ///< of a place against all others: ten thousand to one
+  double speaks_for_right = 0.9;   ///< share of the patches that tell two copies apart
+  double differs_in_copies = 0.1;  ///< share of patches that agree with one of two copies alone
+  double told_apart_nats = 7.0;    ///< of a place against one other: a thousand to one
 };
 
-/// How well a patch fits, in percent.
+/// How well a patch fits, in percent, or one of what follows.
 using PatchFit = std::uint8_t;
 constexpr PatchFit kMapSaysNothing = 255;
+constexpr PatchFit kFreeAsSeen = 200;  ///< as most of any building: it tells little by itself
 
 /// How well it fits with the robot's motion path lying at T_world_odom on `floor`.
 PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_world_odom);
@@ -38,14 +42,13 @@ struct Tally {
   int agreeing = 0;       ///< patches that hit something where the map has it
   int contradicting = 0;  ///< patches that the map has otherwise
 
-  void Add(const Patch& patch, PatchFit fit);
+  void Add(PatchFit fit);
 };
 
 /// How much likelier the right place made them than a wrong one, of which `agrees_wrong` agree.
 double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& options);
 
-/// How much likelier it is that the first of two places is right and the other wrong than that
-/// nothing tells them apart.
+/// How much likelier it is that the first of two places is the right one than the other.
 double LeadOf(const std::vector<PatchFit>& one, const std::vector<PatchFit>& other,
               const EvidenceOptions& options);
 

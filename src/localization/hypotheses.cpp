@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace masked_mapper {
@@ -15,6 +16,8 @@ constexpr double kFollowed = 4.0;     // m of the way by which a hypothesis is h
 constexpr double kAlike = 0.12;       // of score; what fits that much worse is no rival
 constexpr double kLeastScore = 0.5;   // of the coarse search
 constexpr std::size_t kMost = 400;    // hypotheses
+constexpr double kSameM = 0.3;        // what is nearer to a known one is no better
+constexpr double kSameDeg = 2.0;
 
 }  // namespace
 
@@ -24,44 +27,72 @@ void Hypotheses::Restart(std::size_t scan) {
   first_scan_ = scan;
   next_search_m_ = kFirstSearch;
   search_was_complete_ = false;
+  whereabouts_.clear();
+  climbed_.reset();
+}
+
+void Hypotheses::Suggest(FloorId floor, const Pose2& T_world_odom, double prior_nats) {
+  Hypothesis hypothesis;
+  hypothesis.floor = floor;
+  hypothesis.T_world_odom = T_world_odom;
+  hypothesis.prior_nats = prior_nats;
+  hypothesis.anchors.push_back({first_scan_, floor, T_world_odom});
+  hypotheses_.push_back(std::move(hypothesis));
+  whereabouts_.emplace_back(floor, prior_nats);
 }
 
 void Hypotheses::SuggestAround(FloorId floor, const Pose2& T_world_odom) {
+  // A robot is likelier where it was, or a ride away, than anywhere else.
+  constexpr double kStays = 0.5;
+  const auto others = static_cast<double>(std::max<std::size_t>(2, map_.floors().size()) - 1);
   for (const FloorId other : map_.floors()) {
-    Hypothesis hypothesis;
-    hypothesis.floor = other;
-    hypothesis.T_world_odom = T_world_odom;
-    // A robot is likelier where it was, or a ride away, than anywhere else.
-    constexpr double kStays = 0.5;
-    const auto others = static_cast<double>(std::max<std::size_t>(2, map_.floors().size()) - 1);
-    hypothesis.prior_nats = std::log(other == floor ? kStays : 0.5 * (1.0 - kStays) / others);
-    hypothesis.anchors.push_back({first_scan_, other, T_world_odom});
-    hypotheses_.push_back(std::move(hypothesis));
+    Suggest(other, T_world_odom, std::log(other == floor ? kStays : 0.5 * (1.0 - kStays) / others));
   }
 }
 
 void Hypotheses::KeepFloor(FloorId floor) {
   only_floor_ = floor;
+  whereabouts_.erase(std::remove_if(whereabouts_.begin(), whereabouts_.end(),
+                                    [&](const auto& one) { return one.first != floor; }),
+                     whereabouts_.end());
   hypotheses_.erase(std::remove_if(hypotheses_.begin(), hypotheses_.end(),
                                    [&](const Hypothesis& one) { return one.floor != floor; }),
                     hypotheses_.end());
 }
 
 void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t scan) {
-  constexpr double kSigmas = 3.0;
-  constexpr double kSlack = 0.8;  // m; weather, and what the map's own elevations are off
   only_floor_.reset();
+  if (climb_m && climbed_) {
+    *climb_m += climbed_->m;
+    sigma_m = std::hypot(sigma_m, climbed_->sigma_m);
+  }
   std::vector<Hypothesis> after;
   for (const Hypothesis& before : hypotheses_) {
-    for (const FloorId floor : map_.floors()) {
-      const double step = map_.Facts(floor).elevation - map_.Facts(before.floor).elevation;
-      if (climb_m && std::abs(step - *climb_m) > kSigmas * sigma_m + kSlack) continue;
+    for (const FloorId floor : map_.FloorsReached(before.floor, climb_m, sigma_m)) {
       after.push_back(before);
       after.back().floor = floor;
       after.back().anchors.push_back({scan, floor, before.T_world_odom});
     }
   }
+  climbed_.reset();
+  if (after.empty() && !hypotheses_.empty() && climb_m) {
+    climbed_ = Climb{*climb_m, sigma_m};
+    return;
+  }
   hypotheses_ = std::move(after);
+  Whereabouts about;
+  for (const auto& [before, nats] : whereabouts_) {
+    for (const FloorId floor : map_.FloorsReached(before, climb_m, sigma_m)) {
+      const auto known = std::find_if(about.begin(), about.end(),
+                                      [&](const auto& one) { return one.first == floor; });
+      if (known == about.end()) {
+        about.emplace_back(floor, nats);
+      } else {
+        known->second = std::max(known->second, nats);
+      }
+    }
+  }
+  whereabouts_ = std::move(about);
 }
 
 void Hypotheses::Judge(Hypothesis& hypothesis, std::size_t first_patch) const {
@@ -69,7 +100,7 @@ void Hypotheses::Judge(Hypothesis& hypothesis, std::size_t first_patch) const {
   hypothesis.fits.resize(first_patch, kMapSaysNothing);
   for (std::size_t i = first_patch; i < patches_.size(); ++i) {
     hypothesis.fits.push_back(FitOf(patches_[i].patch, floor, hypothesis.T_world_odom));
-    hypothesis.tally.Add(patches_[i].patch, hypothesis.fits.back());
+    hypothesis.tally.Add(hypothesis.fits.back());
   }
 }
 
@@ -85,7 +116,8 @@ void Hypotheses::Follow(Hypothesis& hypothesis, const Stretch& stretch, std::siz
   hypothesis.anchors.push_back({scan, hypothesis.floor, hypothesis.T_world_odom});
 }
 
-void Hypotheses::Step(Stretch& stretch, std::size_t scan) {
+void Hypotheses::Step(Stretch& stretch, std::size_t scan,
+                      const std::optional<UncertainPose2>& T_world_robot) {
   const std::size_t known = patches_.size();
   for (Patch& patch : stretch.TakePatches()) {
     patches_.push_back({std::move(patch), stretch.length_m()});
@@ -100,19 +132,58 @@ void Hypotheses::Step(Stretch& stretch, std::size_t scan) {
   if (stretch.length_m() >= next_search_m_) {
     next_search_m_ =
         stretch.length_m() + std::clamp(0.25 * stretch.length_m(), kFirstSearch, kMostBetween);
+    if (T_world_robot) SearchAround(stretch, *T_world_robot);
     Search(stretch);
   }
   MergeAndOrder(stretch.T_odom_robot());
   Prune();
 }
 
-bool Hypotheses::IsKnown(const Hypothesis& found, const Pose2& T_odom_robot) const {
+bool Hypotheses::IsKnown(const Hypothesis& found, const Pose2& T_odom_robot, double same_m,
+                         double same_deg) const {
   const Pose2 T_world_found = found.T_world_odom * T_odom_robot;
   return std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& known) {
     const Pose2 T_world_known = known.T_world_odom * T_odom_robot;
-    return known.floor == found.floor && Distance(T_world_known, T_world_found) < kPlaceM &&
-           std::abs(WrapAngle(T_world_known.theta - T_world_found.theta)) < DegToRad(kPlaceDeg);
+    return known.floor == found.floor && Distance(T_world_known, T_world_found) < same_m &&
+           std::abs(WrapAngle(T_world_known.theta - T_world_found.theta)) < DegToRad(same_deg);
   });
+}
+
+// Judged by what was seen over the stretch that was searched for.
+void Hypotheses::Add(Hypothesis&& hypothesis) {
+  std::size_t first_patch = patches_.size();
+  while (first_patch > 0 && !patches_[first_patch - 1].patch.points_in_odom.empty()) --first_patch;
+  hypothesis.anchors.push_back({first_scan_, hypothesis.floor, hypothesis.T_world_odom});
+  Judge(hypothesis, first_patch);
+  hypotheses_.push_back(std::move(hypothesis));
+}
+
+// A robot that went far where nothing fitted is somewhere within what its motion leaves open.
+void Hypotheses::SearchAround(const Stretch& stretch, const UncertainPose2& T_world_robot) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kMostM = 5.0;
+  constexpr double kMostDeg = 20.0;
+  const Eigen::Matrix3d& covariance = T_world_robot.covariance;
+  const double within_m = std::clamp(
+      kSigmas * std::sqrt(std::max(covariance(0, 0), covariance(1, 1))), kPlaceM, kMostM);
+  const double within_deg =
+      std::clamp(kSigmas * RadToDeg(std::sqrt(covariance(2, 2))), kPlaceDeg, kMostDeg);
+  const double places =
+      (2.0 * within_m / kPlaceM) * (2.0 * within_m / kPlaceM) * (2.0 * within_deg / kPlaceDeg);
+  const ScanPoints::Ptr points = stretch.Points(kSearched);
+  for (const auto& [id, nats] : whereabouts_) {
+    const FloorSearch& fine = map_.FloorAt(id)->fine();
+    const std::vector<Eigen::Vector2d> thinned = fine.Thinned(*points);
+    // From the scan taken in last to the one observed last is less than the search looks at.
+    const PlaceFit near = fine.FindNear(thinned, T_world_robot.mean, within_m, within_deg);
+    if (near.score < kLeastScore) continue;
+    Hypothesis hypothesis;
+    hypothesis.floor = id;
+    hypothesis.prior_nats = nats - std::log(places);
+    hypothesis.T_world_odom =
+        fine.Climb(thinned, near.T_world_place).T_world_place * Inverse(stretch.T_odom_robot());
+    if (!IsKnown(hypothesis, stretch.T_odom_robot(), kSameM, kSameDeg)) Add(std::move(hypothesis));
+  }
 }
 
 void Hypotheses::Search(const Stretch& stretch) {
@@ -145,7 +216,7 @@ void Hypotheses::Search(const Stretch& stretch) {
       const PlaceFit fine = floor.fine().FindNear(fine_points, coarse.T_world_place, within_m, 2.0);
       hypothesis.T_world_odom = floor.fine().Climb(fine_points, fine.T_world_place).T_world_place *
                                 Inverse(stretch.T_odom_robot());
-      if (!IsKnown(hypothesis, stretch.T_odom_robot())) {
+      if (!IsKnown(hypothesis, stretch.T_odom_robot(), kSameM, kSameDeg)) {
         found.emplace_back(coarse.score, std::move(hypothesis));
       }
     }
@@ -157,22 +228,17 @@ void Hypotheses::Search(const Stretch& stretch) {
     search_was_complete_ = false;
     found.resize(room);
   }
-  std::size_t first_patch = patches_.size();
-  while (first_patch > 0 && !patches_[first_patch - 1].patch.points_in_odom.empty()) --first_patch;
-  for (auto& [score, hypothesis] : found) {
-    hypothesis.anchors.push_back({first_scan_, hypothesis.floor, hypothesis.T_world_odom});
-    Judge(hypothesis, first_patch);
-    hypotheses_.push_back(std::move(hypothesis));
-  }
+  for (auto& [score, hypothesis] : found) Add(std::move(hypothesis));
 }
 
+// Of two at one place the likelier stays.
 void Hypotheses::MergeAndOrder(const Pose2& T_odom_robot) {
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [&](const Hypothesis& a, const Hypothesis& b) { return Nats(a) > Nats(b); });
   std::vector<Hypothesis> all;
   all.swap(hypotheses_);
   for (Hypothesis& one : all) {
-    if (!IsKnown(one, T_odom_robot)) hypotheses_.push_back(std::move(one));
+    if (!IsKnown(one, T_odom_robot, kPlaceM, kPlaceDeg)) hypotheses_.push_back(std::move(one));
   }
 }
 
@@ -201,14 +267,20 @@ const Hypothesis* Hypotheses::Believed() const {
   return is_alone ? &best : nullptr;
 }
 
-// What differs tells them apart, or the rival explains too little of what was seen.
+std::string Hypotheses::Description() const {
+  if (IsBetweenFloors()) return "it is between floors, or on one that the map does not have";
+  const std::size_t places = hypotheses_.size();
+  if (places == 0) return "what is seen was found nowhere in the map so far";
+  if (places == 1) return "one place comes into question, and is not sure yet";
+  std::set<FloorId> floors;
+  for (const Hypothesis& one : hypotheses_) floors.insert(one.floor);
+  return std::to_string(places) + " places on " + std::to_string(floors.size()) +
+         (floors.size() == 1 ? " floor" : " floors") + " come into question";
+}
+
 bool Hypotheses::IsBehind(const Hypothesis& rival, const Hypothesis& best) const {
   const double prior = std::max(0.0, best.prior_nats - rival.prior_nats);
-  if (LeadOf(best.fits, rival.fits, options_) + prior >= options_.told_apart_nats) {
-    return true;
-  }
-  return 2 * rival.tally.agreeing < best.tally.agreeing &&
-         Nats(best) - Nats(rival) >= options_.told_apart_nats;
+  return LeadOf(best.fits, rival.fits, options_) + prior >= options_.told_apart_nats;
 }
 
 }  // namespace masked_mapper

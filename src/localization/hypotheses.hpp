@@ -4,10 +4,13 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "evidence.hpp"
 #include "known_map.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "stretch.hpp"
 
 namespace masked_mapper {
@@ -34,20 +37,28 @@ class Hypotheses {
 
   /// Nothing is known; what follows is seen from `scan` on.
   void Restart(std::size_t scan);
-  /// The robot may be where it was held to be, or straight above or below.
+  /// The robot is about there, with so many nats against all other places together.
+  void Suggest(FloorId floor, const Pose2& T_world_odom, double prior_nats);
+  /// It may be about where it was held to be, straight above or below, or anywhere.
   void SuggestAround(FloorId floor, const Pose2& T_world_odom);
   /// Only on this floor.
   void KeepFloor(FloorId floor);
   /// It rode: `climb_m` up, give or take `sigma_m`; nothing: nobody knows. Floors alone change.
+  /// Where no floor is that far, it is between floors until it rides on: on a landing of stairs.
   void Ride(std::optional<double> climb_m, double sigma_m, std::size_t scan);
+  bool IsBetweenFloors() const { return climbed_.has_value(); }
 
-  /// Takes what was seen since the last call; looks on whole floors when that is due.
-  void Step(Stretch& stretch, std::size_t scan);
+  /// Takes what was seen since the last call; looks on whole floors when that is due, and around
+  /// where motion puts the robot since it was last sure of its place, if it ever was.
+  void Step(Stretch& stretch, std::size_t scan, const std::optional<UncertainPose2>& T_world_robot);
 
   /// The one that is believed; null while there is none.
   const Hypothesis* Believed() const;
   /// All that are held to be possible, the likeliest first.
   const std::vector<Hypothesis>& all() const { return hypotheses_; }
+
+  /// How many there are and where, for people.
+  std::string Description() const;
 
   int searches() const { return searches_; }
 
@@ -61,8 +72,13 @@ class Hypotheses {
   }
   void Judge(Hypothesis& hypothesis, std::size_t first_patch) const;
   void Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const;
+  using Whereabouts = std::vector<std::pair<FloorId, double>>;  ///< nats of each floor
+
   void Search(const Stretch& stretch);
-  bool IsKnown(const Hypothesis& found, const Pose2& T_odom_robot) const;
+  void SearchAround(const Stretch& stretch, const UncertainPose2& T_world_robot);
+  void Add(Hypothesis&& hypothesis);
+  bool IsKnown(const Hypothesis& found, const Pose2& T_odom_robot, double same_m,
+               double same_deg) const;
   bool IsBehind(const Hypothesis& rival, const Hypothesis& best) const;
   void MergeAndOrder(const Pose2& T_odom_robot);
   void Prune();
@@ -73,6 +89,12 @@ class Hypotheses {
   std::vector<SeenPatch> patches_;
   std::size_t first_scan_ = 0;
   std::optional<FloorId> only_floor_;
+  struct Climb {
+    double m = 0.0;
+    double sigma_m = 0.0;
+  };
+  std::optional<Climb> climbed_;  ///< since it left the floors of all hypotheses
+  Whereabouts whereabouts_;       ///< floors on which it was suggested
   double next_search_m_ = 0.0;
   bool search_was_complete_ = false;
   int searches_ = 0;

@@ -32,6 +32,17 @@ std::vector<std::vector<PosedScan>> ScansOfFloors(const BuildingMap& map) {
 
 }  // namespace
 
+UncertainPose2 Widened(UncertainPose2 T_a_b, double sigma_m, double sigma_deg) {
+  const double sigma_rad = DegToRad(sigma_deg);
+  T_a_b.covariance.diagonal() +=
+      Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad);
+  return T_a_b;
+}
+
+double SigmaM(const UncertainPose2& T_a_b) {
+  return std::sqrt(T_a_b.covariance(0, 0) + T_a_b.covariance(1, 1));
+}
+
 KnownMap::KnownMap(const BuildingMap& map, const SearchableFloorOptions& options) : map_(map) {
   const std::vector<std::vector<PosedScan>> scans = ScansOfFloors(map);
   double seen_m2 = 0.0;
@@ -45,11 +56,6 @@ KnownMap::KnownMap(const BuildingMap& map, const SearchableFloorOptions& options
       floor.reset();
     }
     floors_.push_back(std::move(floor));
-  }
-  for (const Edge& edge : map.graph.edges()) {
-    if (edge.kind != EdgeKind::kFloorChange) continue;
-    floor_changes_in_world_.push_back(map.graph.node(edge.from).T_world_robot.Translation());
-    floor_changes_in_world_.push_back(map.graph.node(edge.to).T_world_robot.Translation());
   }
   log_places_ = std::log(std::max(1.0, seen_m2 / (kPlaceM * kPlaceM)) * 360.0 / kPlaceDeg);
 }
@@ -69,10 +75,20 @@ std::vector<NodeId> KnownMap::NodesNear(FloorId floor, const Eigen::Vector2d& po
   return ids;
 }
 
-bool KnownMap::IsAtFloorChange(const Eigen::Vector2d& point_in_world, double within_m) const {
-  return std::any_of(
-      floor_changes_in_world_.begin(), floor_changes_in_world_.end(),
-      [&](const Eigen::Vector2d& place) { return (place - point_in_world).norm() <= within_m; });
+std::vector<FloorId> KnownMap::FloorsReached(FloorId from, std::optional<double> climb_m,
+                                             double sigma_m) const {
+  constexpr double kSigmas = 3.0;
+  constexpr double kSlack = 0.8;  // m; weather
+  std::vector<FloorId> reached;
+  const Floor& left = Facts(from);
+  for (const FloorId floor : floors()) {
+    const Floor& other = Facts(floor);
+    const double sigma = std::hypot(sigma_m, left.elevation_sigma, other.elevation_sigma);
+    const double step = other.elevation - left.elevation;
+    if (climb_m && std::abs(step - *climb_m) > kSigmas * sigma + kSlack) continue;
+    reached.push_back(floor);
+  }
+  return reached;
 }
 
 }  // namespace masked_mapper

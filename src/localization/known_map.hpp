@@ -3,8 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/searchable_floor.hpp"
 
@@ -13,6 +15,11 @@ namespace masked_mapper {
 /// Two places that are nearer, in both, are one.
 constexpr double kPlaceM = 1.5;
 constexpr double kPlaceDeg = 8.0;
+
+/// With so much more doubt along each axis, independent of what there was.
+UncertainPose2 Widened(UncertainPose2 T_a_b, double sigma_m, double sigma_deg);
+/// Of the position, m.
+double SigmaM(const UncertainPose2& T_a_b);
 
 class KnownMap {
  public:
@@ -33,8 +40,10 @@ class KnownMap {
   std::vector<NodeId> NodesNear(FloorId floor, const Eigen::Vector2d& point_in_world,
                                 double within_m) const;
 
-  /// Whether the map left a floor, or came to one, within `within_m` of a point.
-  bool IsAtFloorChange(const Eigen::Vector2d& point_in_world, double within_m) const;
+  /// Floors to which a ride from `from` may have gone: `climb_m` up, give or take `sigma_m`;
+  /// nothing: nobody knows.
+  std::vector<FloorId> FloorsReached(FloorId from, std::optional<double> climb_m,
+                                     double sigma_m) const;
 
   /// Natural logarithm of how many places there are to be told apart.
   double LogPlaces() const { return log_places_; }
@@ -43,7 +52,6 @@ class KnownMap {
   const BuildingMap& map_;
   std::vector<std::unique_ptr<SearchableFloor>> floors_;  ///< by FloorId
   std::vector<FloorId> ids_;
-  std::vector<Eigen::Vector2d> floor_changes_in_world_;
   double log_places_ = 0.0;
 };
 

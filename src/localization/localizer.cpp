@@ -3,40 +3,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <variant>
 
+#include "answers.hpp"
+#include "driven_way.hpp"
 #include "evidence.hpp"
+#include "held_place.hpp"
 #include "hypotheses.hpp"
 #include "known_map.hpp"
 #include "masked_mapper/localization/map_changes.hpp"
-#include "masked_mapper/text/number_text.hpp"
-#include "pose_tracker.hpp"
 #include "ride_watch.hpp"
 #include "stretch.hpp"
 
 namespace masked_mapper {
 namespace {
 
-constexpr double kStep = 1.0;         // m of way, or
-constexpr double kStepS = 1.0;        // s, from one look at what is new to the next
-constexpr double kLongGap = 20.0;     // s without a scan: the robot may have been carried
-constexpr double kFastest = 4.0;      // m/s; what the odometry does beyond it no wheels did
-constexpr double kFoundSigma = 0.15;  // m, of a place that was found
-constexpr double kFoundSigmaDeg = 1.0;
-constexpr double kOpenSigma = 0.15;     // m, from which on a match is due whatever the mask says
+constexpr double kStep = 1.0;   // m of way, or
+constexpr double kStepS = 1.0;  // s, from one look at what is new to the next
+constexpr double kCarriedSigma =
+    0.5;  // m, of a robot that was carried, if it stands where it stood
+constexpr double kCarriedSigmaDeg = 5.0;
 constexpr double kHeld = 3.0;           // m of way from a match on which the pose is as good as it
 constexpr double kComparedEvery = 0.5;  // m of way between scans that tell what has changed
-constexpr double kRetry = 0.5;          // m of way after a match that did not fit
-constexpr double kCabRest = 3.0;        // s, that wheels rest in a cab when a ride is noticed
+constexpr double kLanding = 20.0;       // m of way; what is larger is a floor
 constexpr std::size_t kFew = 24;        // hypotheses that are looked at while the robot rests
-
-UncertainPose2 Widened(UncertainPose2 pose, double sigma_m, double sigma_deg) {
-  const double sigma_rad = DegToRad(sigma_deg);
-  pose.covariance.diagonal() +=
-      Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad);
-  return pose;
-}
 
 }  // namespace
 
@@ -46,122 +38,80 @@ class Localizer::Impl {
       : options_(options),
         map_(map, options.floor_search),
         mask_(MakeMask(mask, options.masks)),
+        way_(options.motion),
         rides_(options.floors),
         hypotheses_(map_, evidence_),
-        tracker_(map_, options.closures) {
+        place_(map_, options.closures, evidence_,
+               {options.min_edge_length_m, options.max_edge_length_m}) {
     hypotheses_.Restart(0);
   }
 
   bool Observe(const Observation& observation) {
     rides_.Observe(observation);
     if (const auto* label = std::get_if<FloorLabel>(&observation)) Read(*label);
-    if (const auto* odometry = std::get_if<OdometryReading>(&observation)) {
-      if (motion_) motion_->Observe(*odometry);
-    }
+    if (const auto* odometry = std::get_if<OdometryReading>(&observation)) way_.Observe(*odometry);
     const auto* scan = std::get_if<LaserScan>(&observation);
     if (scan == nullptr) return false;
     ObserveScan(*scan);
     return true;
   }
 
-  const Localization& result() const { return result_; }
+  void BeginLog(MotionSource source) {
+    if (way_.HasBegun()) mask_->Restart();
+    way_.BeginLog(source);
+    rides_ = RideWatch(options_.floors);
+    is_riding_ = false;
+    label_.clear();
+  }
+
+  const Localization& result() const { return answers_.result(); }
   std::vector<MapChange> Changes() const { return changes_.Find(); }
 
   std::string Doubt() const {
-    if (is_sure_) return {};
-    const std::size_t places = hypotheses_.all().size();
-    if (places == 0) return why_ + "; what is seen was found nowhere in the map so far";
-    if (places == 1) return why_ + "; one place comes into question, and is not sure yet";
-    std::vector<FloorId> floors;
-    for (const Hypothesis& one : hypotheses_.all()) floors.push_back(one.floor);
-    std::sort(floors.begin(), floors.end());
-    const auto different = std::unique(floors.begin(), floors.end()) - floors.begin();
-    return why_ + "; " + std::to_string(places) + " places on " + std::to_string(different) +
-           (different == 1 ? " floor" : " floors") + " come into question";
+    if (answers_.IsSure()) return {};
+    return is_held_ ? why_ : why_ + "; " + hypotheses_.Description();
   }
 
  private:
-  void ObserveScan(const LaserScan& scan) {
-    if (!motion_) Begin(scan);
-    const bool was_carried = WasCarried(scan);
-    NoteRest(scan);
-    const bool ride_turned = WatchRides();
-    motion_->Observe(scan, ride_turned);
-    const Pose2& T_odom_robot = motion_->T_odom_robot();
-    if (!result_.scans.empty() && !was_carried) {
-      travelled_m_ += Distance(result_.scans.back().T_odom_robot, T_odom_robot);
-    }
-    LocatedScan located;
-    located.stamp = scan.stamp;
-    located.log_stamp = scan.log_stamp;
-    located.T_odom_robot = T_odom_robot;
-    result_.scans.push_back(located);
-    if (was_carried) GoOnFromWhereItWas();
+  void ObserveScan(const LaserScan& bent) {
+    const bool ride_turned = way_.HasBegun() && WatchRides();
+    const LaserScan scan = way_.Observe(bent, ride_turned);
+    const Pose2& T_odom_robot = way_.motion().T_odom_robot();
+    rides_.NotePose(scan.T_odom_robot ? *scan.T_odom_robot : T_odom_robot);
+    place_.Travel(way_.step_m());
+    answers_.Add(scan, T_odom_robot);
+    if (!way_.carried().empty()) GoOnFromWhereItWas();
     if (!is_riding_) mask_->Observe({scan, T_odom_robot});
-    stretch_.Add(scan, T_odom_robot);
-    if (is_sure_) {
+    if (is_held_) {
       Track(scan);
     } else {
+      stretch_.Add(scan, T_odom_robot);
       Seek();
     }
     Answer();
-    result_.matches = tracker_.matches();
-    result_.searches = hypotheses_.searches();
-    T_raw_before_ = scan.T_odom_robot;
-  }
-
-  void NoteRest(const LaserScan& scan) {
-    newest_ = scan.stamp;
-    constexpr double kCabRadius = 0.25;  // m
-    const Pose2 now = scan.T_odom_robot ? *scan.T_odom_robot : motion_->T_odom_robot();
-    if (T_rest_ && Distance(*T_rest_, now) <= kCabRadius) return;
-    T_rest_ = now;
-    moved_at_s_ = scan.stamp;
-  }
-
-  void Begin(const LaserScan& scan) {
-    MotionOptions motion = options_.motion;
-    if (motion.source == MotionSource::kAuto) {
-      motion.source = scan.T_odom_robot ? MotionSource::kFused : MotionSource::kScans;
-    }
-    motion_.emplace(motion);
-    why_ = "not found yet";
-    result_.unsure_spans.push_back({scan.stamp, scan.stamp, why_});
-  }
-
-  bool WasCarried(const LaserScan& scan) {
-    if (result_.scans.empty()) return false;
-    const double elapsed = scan.stamp - result_.scans.back().stamp;
-    if (elapsed > kLongGap) {
-      carried_ = "no scan for " + FixedText(elapsed, 1) + " s";
-      return true;
-    }
-    if (!scan.T_odom_robot || !T_raw_before_) return false;
-    if (Distance(*T_raw_before_, *scan.T_odom_robot) <= 1.0 + kFastest * elapsed) return false;
-    carried_ = "the odometry jumped";
-    return true;
   }
 
   // It may stand where it stood, or anywhere; what was seen before is of another stretch.
   void GoOnFromWhereItWas() {
-    const Pose2 T_world_robot = T_matched_robot_before_;
-    const std::size_t scan = result_.scans.size() - 1;
-    Lose(carried_, scan);
-    if (has_place_) {
-      hypotheses_.SuggestAround(floor_, T_world_robot * Inverse(motion_->T_odom_robot()));
-    }
+    const std::size_t scan = answers_.Last();
+    Lose(way_.carried(), scan);
+    if (!had_place_) return;
+    place_.Take(place_.floor(), Widened(T_world_robot_before_, kCarriedSigma, kCarriedSigmaDeg),
+                way_.motion());
+    SuggestHere(place_.floor());
+  }
+
+  void SuggestHere(FloorId floor) {
+    hypotheses_.SuggestAround(floor, place_.WorldFromOdom(way_.motion()));
   }
 
   void Lose(const std::string& why, std::size_t scan) {
     stretch_.Restart();
     hypotheses_.Restart(scan);
-    last_step_m_ = 0.0;
-    doubt_nats_ = 0.0;
+    last_step_m_ = way_.travelled_m();
+    last_step_s_ = -1e9;
     why_ = why;
-    if (is_sure_) {
-      result_.unsure_spans.push_back({result_.scans[scan].stamp, result_.scans[scan].stamp, why});
-    }
-    is_sure_ = false;
+    is_held_ = false;
   }
 
   void Read(const FloorLabel& label) {
@@ -170,11 +120,12 @@ class Localizer::Impl {
     for (const FloorId floor : map_.floors()) {
       const Floor& known = map_.Facts(floor);
       if (!known.label_given || known.label != label_) continue;
-      if (is_sure_) {
-        if (floor_ != floor) match_is_due_ = true;
-        floor_ = ride_floor_ = floor;
+      if (is_held_) {
+        if (place_.floor() != floor) place_.WantMatch();
+        place_.SetFloor(floor);
+        ride_floor_ = floor;
       } else {
-        hypotheses_.Ride(std::nullopt, 0.0, result_.scans.size());
+        hypotheses_.Ride(std::nullopt, 0.0, answers_.result().scans.size());
         hypotheses_.KeepFloor(floor);
       }
     }
@@ -187,205 +138,133 @@ class Localizer::Impl {
     const bool was_riding = is_riding_;
     if (news && !is_riding_) {
       is_riding_ = true;
-      ride_floor_ = floor_;
-      is_in_cab_ = newest_ - moved_at_s_ >= kCabRest;
+      ride_floor_ = place_.floor();
+      is_in_cab_ = rides_.IsResting();
       // On stairs the scene changes step by step, and its far walls hold the way.
-      if (is_in_cab_) motion_->EnterTransit();
+      if (is_in_cab_) way_.motion().EnterTransit();
     }
     if (news) Follow(*news);
     if (is_riding_ && (!news || news->is_over)) {
       is_riding_ = false;
-      if (!news) floor_ = ride_floor_;
-      if (is_in_cab_) motion_->LeaveTransit();
+      if (!news) place_.SetFloor(ride_floor_);
+      if (is_in_cab_) way_.motion().LeaveTransit();
       mask_->Restart();
-      match_is_due_ = true;
+      place_.WantMatch();
     }
     return was_riding != is_riding_;
   }
 
   void Follow(const RideNews& news) {
-    if (!is_sure_) {
-      if (news.is_over) {
-        hypotheses_.Ride(news.climb_m, news.sigma_m, result_.scans.size());
-      }
+    if (!is_held_) {
+      if (news.is_over)
+        hypotheses_.Ride(news.climb_m, news.sigma_m, answers_.result().scans.size());
       return;
     }
-    const std::vector<FloorId> floors = FloorsReached(news);
+    const std::vector<FloorId> floors = map_.FloorsReached(ride_floor_, news.climb_m, news.sigma_m);
     if (floors.size() == 1) {
-      floor_ = floors.front();
-    } else if (news.is_over && !result_.scans.empty()) {
-      const Pose2 T_world_odom = WorldFromOdom();
-      Lose(floors.empty() ? "it rode to a floor that the map does not have"
+      place_.SetFloor(floors.front());
+    } else if (news.is_over && !answers_.empty()) {
+      Lose(floors.empty() ? "it rode to no floor that the map has"
                           : "it rode, and more than one floor may be where to",
-           result_.scans.size() - 1);
-      if (!floors.empty()) {
-        hypotheses_.SuggestAround(ride_floor_, T_world_odom);
-        hypotheses_.Ride(news.climb_m, news.sigma_m, result_.scans.size());
-      }
+           answers_.Last());
+      hypotheses_.Suggest(ride_floor_, place_.WorldFromOdom(way_.motion()), 0.0);
+      hypotheses_.Ride(news.climb_m, news.sigma_m, answers_.result().scans.size());
     }
   }
-
-  std::vector<FloorId> FloorsReached(const RideNews& news) const {
-    constexpr double kSigmas = 3.0;
-    constexpr double kSlack = 0.8;  // m
-    std::vector<FloorId> reached;
-    for (const FloorId floor : map_.floors()) {
-      const double step = map_.Facts(floor).elevation - map_.Facts(ride_floor_).elevation;
-      if (news.climb_m && std::abs(step - *news.climb_m) > kSigmas * news.sigma_m + kSlack)
-        continue;
-      reached.push_back(floor);
-    }
-    return reached;
-  }
-
-  UncertainPose2 Here() const { return T_world_matched_ * motion_->T_node_robot(); }
-  Pose2 WorldFromOdom() const { return Here().mean * Inverse(motion_->T_odom_robot()); }
 
   bool IsTimeToStep() const {
-    return stretch_.length_m() - last_step_m_ >= kStep ||
-           result_.scans.back().stamp - last_step_s_ >= kStepS;
+    return way_.travelled_m() - last_step_m_ >= kStep ||
+           answers_.LastStamp() - last_step_s_ >= kStepS;
   }
 
   void NoteStep() {
-    last_step_m_ = stretch_.length_m();
-    last_step_s_ = result_.scans.back().stamp;
+    last_step_m_ = way_.travelled_m();
+    last_step_s_ = answers_.LastStamp();
   }
 
   void Seek() {
-    const bool has_moved = stretch_.length_m() - last_step_m_ >= kStep;
+    const bool has_moved = way_.travelled_m() - last_step_m_ >= kStep;
     if (is_riding_ || !IsTimeToStep()) return;
+    if (hypotheses_.IsBetweenFloors()) {
+      if (stretch_.length_m() < kLanding) return;
+      Lose("it rode to no floor that the map has", answers_.Last());
+    }
     if (!has_moved && hypotheses_.all().size() > kFew) return;
     NoteStep();
-    hypotheses_.Step(stretch_, result_.scans.size() - 1);
+    std::optional<UncertainPose2> by_motion;
+    if (had_place_) by_motion = place_.Robot(way_.motion());
+    hypotheses_.Step(stretch_, answers_.Last(), by_motion);
     if (const Hypothesis* found = hypotheses_.Believed()) Settle(*found);
   }
 
   void Settle(const Hypothesis& found) {
-    for (std::size_t i = 0; i < found.anchors.size(); ++i) {
-      const std::size_t end =
-          i + 1 < found.anchors.size() ? found.anchors[i + 1].scan : result_.scans.size();
-      for (std::size_t k = found.anchors[i].scan; k < end; ++k) {
-        LocatedScan& scan = result_.scans[k];
-        scan.placed = true;
-        scan.floor = found.anchors[i].floor;
-        scan.T_world_robot =
-            Widened({found.anchors[i].T_world_odom * scan.T_odom_robot, Eigen::Matrix3d::Zero()},
-                    kFoundSigma, kFoundSigmaDeg);
-      }
-    }
-    if (!result_.found) {
-      result_.found = true;
-      result_.found_after_m = travelled_m_;
-    }
-    floor_ = ride_floor_ = found.floor;
-    is_sure_ = has_place_ = true;
-    Anchor(Widened({found.T_world_odom * motion_->T_odom_robot(), Eigen::Matrix3d::Zero()},
-                   kFoundSigma, kFoundSigmaDeg));
-    match_is_due_ = true;
-    doubt_nats_ = 0.0;
-  }
-
-  void Anchor(const UncertainPose2& T_world_robot) {
-    T_world_matched_ = T_world_robot;
-    matched_at_m_ = tried_at_m_ = travelled_m_;
-    motion_->StartNode();
+    answers_.PlaceInHindsight(found);
+    is_held_ = had_place_ = true;
+    why_ = "nothing of the map told its pose for long";
+    ride_floor_ = found.floor;
+    place_.Take(found.floor, Found(found.T_world_odom * way_.motion().T_odom_robot()),
+                way_.motion());
+    place_.WantMatch();
   }
 
   void Track(const LaserScan& scan) {
     if (is_riding_) return;
-    const double since_match_m = travelled_m_ - matched_at_m_;
-    const double since_try_m = travelled_m_ - tried_at_m_;
-    const UncertainPose2 here = Here();
-    const bool is_open = std::sqrt(here.covariance(0, 0) + here.covariance(1, 1)) > kOpenSigma ||
-                         since_match_m > options_.max_edge_length_m;
-    const bool by_mask = since_match_m > options_.min_edge_length_m && mask_->Fires();
-    if ((by_mask || is_open || match_is_due_) && (since_try_m >= kRetry || match_is_due_)) {
-      Match(scan, here);
+    place_.Track(scan, *mask_, way_.motion());
+    if (IsTimeToStep()) {
+      NoteStep();
+      if (!place_.Agrees(scan, *mask_, way_.motion())) {
+        GoOnLooking("what it saw did not fit the map any more");
+        return;
+      }
     }
-    if (IsTimeToStep()) Doubt(scan);
-    const bool is_held = is_sure_ && travelled_m_ - matched_at_m_ < kHeld;
-    if (is_held && travelled_m_ - compared_at_m_ >= kComparedEvery) {
-      compared_at_m_ = travelled_m_;
-      changes_.Observe(scan, *map_.FloorAt(floor_), Here().mean);
-    }
-  }
-
-  bool Match(const LaserScan& scan, const UncertainPose2& guess) {
-    match_is_due_ = false;
-    tried_at_m_ = travelled_m_;
-    const std::optional<UncertainPose2> match = tracker_.Match(PointsInRobot(scan), floor_, guess);
-    if (!match) return false;
-    Anchor(*match);
-    mask_->OnNode();
-    return true;
-  }
-
-  // Whether what is new is of another place after all.
-  void Doubt(const LaserScan& scan) {
-    NoteStep();
-    Tally tally;
-    const Pose2 T_world_odom = WorldFromOdom();
-    for (const Patch& patch : stretch_.TakePatches()) {
-      tally.Add(patch, FitOf(patch, *map_.FloorAt(floor_), T_world_odom));
-    }
-    doubt_nats_ = std::max(0.0, doubt_nats_ - NatsOf(tally, evidence_.agrees_anywhere, evidence_));
-    if (doubt_nats_ < evidence_.believed_nats) return;
-    constexpr double kLookAround = 0.3;  // m
-    constexpr double kLookAroundDeg = 3.0;
-    if (Match(scan, Widened(Here(), kLookAround, kLookAroundDeg))) {
-      doubt_nats_ = 0.0;
+    if (SigmaM(place_.Robot(way_.motion())) > kPlaceM) {
+      GoOnLooking("it went far where nothing fitted the map");
       return;
     }
-    Lose("what it saw did not fit the map any more", result_.scans.size() - 1);
-    hypotheses_.SuggestAround(floor_, T_world_odom);
+    if (place_.SinceMatch() < kHeld && way_.travelled_m() - compared_at_m_ >= kComparedEvery) {
+      compared_at_m_ = way_.travelled_m();
+      changes_.Observe(scan, *map_.FloorAt(place_.floor()), place_.Robot(way_.motion()).mean);
+    }
+  }
+
+  void GoOnLooking(const std::string& why) {
+    Lose(why, answers_.Last());
+    SuggestHere(place_.floor());
   }
 
   void Answer() {
-    LocatedScan& now = result_.scans.back();
-    if (!is_sure_) {
-      result_.unsure_spans.back().t_b = now.stamp;
-      return;
+    if (is_held_) {
+      const UncertainPose2 T_world_robot = place_.Robot(way_.motion());
+      answers_.Place(place_.floor(), T_world_robot, way_.travelled_m());
+      T_world_robot_before_ = T_world_robot;
     }
-    now.sure = now.placed = true;
-    now.floor = floor_;
-    now.T_world_robot = Here();
-    T_matched_robot_before_ = now.T_world_robot.mean;
+    answers_.Close(why_);
+    answers_.result().matches = place_.matches();
+    answers_.result().searches = hypotheses_.searches();
   }
 
   LocalizerOptions options_;
   EvidenceOptions evidence_;
   KnownMap map_;
   std::unique_ptr<Mask> mask_;
-  std::optional<MotionEstimator> motion_;
+  DrivenWay way_;
   RideWatch rides_;
   Stretch stretch_;
   Hypotheses hypotheses_;
-  PoseTracker tracker_;
+  HeldPlace place_;
   ChangeFinder changes_;
-  Localization result_;
+  Answers answers_;
 
-  bool is_sure_ = false;
-  bool has_place_ = false;  ///< was sure before
-  FloorId floor_ = 0;
-  UncertainPose2 T_world_matched_;  ///< where motion counts from
-  Pose2 T_matched_robot_before_;    ///< T_world_robot of the scan before
-  double matched_at_m_ = 0.0;
+  bool is_held_ = false;                 ///< its place is believed
+  bool had_place_ = false;               ///< is sure, or was
+  UncertainPose2 T_world_robot_before_;  ///< at the last scan at which it was sure
   double compared_at_m_ = 0.0;
-  double tried_at_m_ = 0.0;
-  bool match_is_due_ = false;
-  double doubt_nats_ = 0.0;
 
   bool is_riding_ = false;
-  bool is_in_cab_ = false;   ///< the ride that goes on, or the last
-  double newest_ = 0.0;      ///< s
-  double moved_at_s_ = 0.0;  ///< s, since when the robot rests
-  std::optional<Pose2> T_rest_;
+  bool is_in_cab_ = false;  ///< on the ride that goes on, or the last
   FloorId ride_floor_ = 0;  ///< left last
   std::string label_;
-  std::string why_;
-  std::string carried_;
-  std::optional<Pose2> T_raw_before_;
-  double travelled_m_ = 0.0;
+  std::string why_ = "not found yet";
   double last_step_m_ = 0.0;
   double last_step_s_ = -1e9;
 };
@@ -395,6 +274,7 @@ Localizer::Localizer(const BuildingMap& map, const std::string& mask,
     : impl_(std::make_unique<Impl>(map, mask, options)) {}
 Localizer::~Localizer() = default;
 
+void Localizer::BeginLog(MotionSource source) { impl_->BeginLog(source); }
 bool Localizer::Observe(const Observation& observation) { return impl_->Observe(observation); }
 const Localization& Localizer::result() const { return impl_->result(); }
 std::vector<MapChange> Localizer::Changes() const { return impl_->Changes(); }

@@ -9,11 +9,13 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kWindow = 240.0;   // s; the weather does little in it
-constexpr double kLookEvery = 0.8;  // s
-constexpr double kLongGap = 15.0;   // s without a reading: a ride may have been in between
-constexpr double kSettled = 5.0;    // s; until then stairs may only pause
-constexpr double kSame = 3.0;       // s, by which the end of a ride may look otherwise later
+constexpr double kWindow = 240.0;    // s; the weather does little in it
+constexpr double kLookEvery = 0.8;   // s
+constexpr double kLongGap = 15.0;    // s without a reading: a ride may have been in between
+constexpr double kSettled = 5.0;     // s; until then stairs may only pause
+constexpr double kSame = 3.0;        // s, by which the end of a ride may look otherwise later
+constexpr double kCabRest = 3.0;     // s, that wheels rest in a cab when a ride is noticed
+constexpr double kCabRadius = 0.25;  // m
 
 std::vector<double> StampsOf(const PressureHeights& heights) {
   std::vector<double> stamps;
@@ -44,6 +46,14 @@ void RideWatch::Observe(const Observation& observation) {
   Forget(pressure_, newest_ - kWindow);
   Forget(acceleration_, newest_ - kWindow);
 }
+
+void RideWatch::NotePose(const Pose2& T_odom_robot) {
+  if (T_odom_rest_ && Distance(*T_odom_rest_, T_odom_robot) <= kCabRadius) return;
+  T_odom_rest_ = T_odom_robot;
+  moved_at_ = newest_;
+}
+
+bool RideWatch::IsResting() const { return newest_ - moved_at_ >= kCabRest; }
 
 std::vector<FloorTransit> RideWatch::Transits() const {
   PressureTrack pressure;

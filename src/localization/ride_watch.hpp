@@ -25,6 +25,11 @@ class RideWatch {
 
   /// Observations in order of stamps; labels are not its business.
   void Observe(const Observation& observation);
+  /// Where the robot is at the scan observed last, by its motion.
+  void NotePose(const Pose2& T_odom_robot);
+
+  /// Whether the wheels rest, as in a cab; on stairs they turn.
+  bool IsResting() const;
 
   /// Whether it is time for News() again.
   bool IsDue() const;
@@ -41,6 +46,8 @@ class RideWatch {
   double newest_ = 0.0;  ///< s
   double looked_ = 0.0;  ///< s, when the last minutes were last looked at
   double told_to_ = -std::numeric_limits<double>::infinity();  ///< s: rides up to here are told
+  std::optional<Pose2> T_odom_rest_;
+  double moved_at_ = 0.0;  ///< s, since when the robot rests
   bool may_tell_ = false;  ///< there was a reading that tells of floors
 };
 

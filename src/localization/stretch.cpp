@@ -30,7 +30,26 @@ std::int64_t Key(const Eigen::Vector2d& point, double cell_m) {
   return Key(point.x(), point.y(), cell_m);
 }
 
+constexpr std::size_t kLeastHits = 3;  // of a patch
+constexpr std::size_t kLeastFree = 6;
+
 }  // namespace
+
+std::vector<Patch> HitsOf(const LaserScan& scan, const Pose2& T_odom_robot) {
+  std::unordered_set<std::int64_t> cells;
+  std::map<std::int64_t, Patch> patches;
+  for (const pcl::PointXY& point : *PointsInRobot(scan)) {
+    if (std::hypot(point.x, point.y) > kFarthest) continue;
+    const Eigen::Vector2d in_odom = T_odom_robot * Eigen::Vector2d(point.x, point.y);
+    if (!cells.insert(Key(in_odom, kCell)).second) continue;
+    patches[Key(in_odom, kPatch)].points_in_odom.push_back(in_odom);
+  }
+  std::vector<Patch> hits;
+  for (auto& [key, patch] : patches) {
+    if (patch.points_in_odom.size() >= kLeastHits) hits.push_back(std::move(patch));
+  }
+  return hits;
+}
 
 void Stretch::Restart() { *this = Stretch(); }
 
@@ -89,8 +108,6 @@ bool Stretch::IsAtSomething(const Eigen::Vector2d& point_in_odom) const {
 
 // What is too little for a patch waits for more of the same square metre.
 std::vector<Patch> Stretch::TakePatches() {
-  constexpr std::size_t kLeastHits = 3;
-  constexpr std::size_t kLeastFree = 6;
   std::vector<Patch> taken;
   for (const bool is_free : {false, true}) {
     std::vector<Eigen::Vector2d>& points = is_free ? new_free_in_odom_ : new_hits_in_odom_;

@@ -19,6 +19,9 @@ struct Patch {
   bool is_free = false;
 };
 
+/// What one scan hits, by square metres.
+std::vector<Patch> HitsOf(const LaserScan& scan, const Pose2& T_odom_robot);
+
 class Stretch {
  public:
   void Restart();

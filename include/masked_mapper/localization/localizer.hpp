@@ -67,6 +67,11 @@ class Localizer {
   Localizer(const BuildingMap& map, const std::string& mask, const LocalizerOptions& options);
   ~Localizer();
 
+  /// Another log begins, whose motion `source` tells: not kAuto. To be called before the first one
+  /// only where kAuto is settled by more than the first scan. Between two logs the robot may have
+  /// been carried anywhere.
+  void BeginLog(MotionSource source);
+
   /// Observations in order of stamps. True: it was a scan, and result().scans has the answer.
   bool Observe(const Observation& observation);
 
