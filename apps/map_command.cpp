@@ -50,6 +50,9 @@ void AddInputs(CLI::App* command, MapArguments* arguments) {
       ->add_option("--onto", arguments->onto,
                    "grow this map: what `map` wrote, or the building.mmap in it; OUT is another")
       ->type_name("OLD");
+  command->add_flag("--forget", arguments->forget,
+                    "draw what the newest drive saw where it saw enough, not what stood there\n"
+                    "before: the same as --set grid.forget=true");
 }
 
 void AddRunFlags(CLI::App* command, MapArguments* arguments) {
@@ -84,6 +87,7 @@ constexpr const char* kFooter =
     "  masked_mapper map drive.bag -o out --floors floors.csv\n"
     "  masked_mapper map monday.log.gz tuesday.log.gz -o out\n"
     "  masked_mapper map wednesday.log.gz --onto out -o grown\n"
+    "  masked_mapper map after_works.log.gz --onto out --forget -o renewed\n"
     "\n"
     "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
     "floors/*.pgm + .yaml (map_server), trajectory.tum, graph.g2o, closures.csv, summary.json,\n"

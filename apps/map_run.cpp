@@ -267,6 +267,7 @@ int ResumeFinished(const MapArguments& arguments, const MapOrigin& origin, Saved
 Options AskedOptions(const MapArguments& arguments) {
   Options options = ReadOptions(arguments.options);
   if (!arguments.threads.empty()) SetOption("--threads", "threads", arguments.threads, options);
+  if (arguments.forget) options.grid.forget = true;
   CheckOptions(options);
   SettleThreads(options);
   return options;

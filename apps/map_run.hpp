@@ -17,6 +17,7 @@ struct MapArguments {
   std::string edits;
   std::vector<std::string> floors;
   std::string onto;
+  bool forget = false;
   std::string threads;
   double checkpoint_s = 1.0;
   bool resume = false;

@@ -36,9 +36,14 @@ double SecondsSince(Clock::time_point start) {
 std::vector<PosedScan> DrawnScans(const BuildingMap& result) {
   std::vector<PosedScan> scans;
   scans.reserve(result.kept_scans.size());
+  std::size_t drive = 0;
   for (const KeptScan& kept : result.kept_scans) {
     const TrajectoryPose& pose = result.trajectory.at(kept.trajectory_index);
-    if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
+    while (drive + 1 < result.drives.size() &&
+           kept.trajectory_index >= result.drives[drive + 1].first_pose) {
+      ++drive;
+    }
+    if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan, drive});
   }
   return scans;
 }

@@ -191,6 +191,8 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "m; beams are drawn up to here"},
       {"grid.free_range_without_return_m", &o.grid.free_range_without_return_m, 0, kFar,
        "m that a beam clears which met nothing; 0: it does not"},
+      {"grid.forget", &o.grid.forget, 0, 0,
+       "newer drives stand for older ones where they saw enough"},
 
       {"octree.wall_height_m", &o.octree.wall_height_m, 0.01, 100,
        "m; walls reach from the floor's elevation up to here"},

@@ -40,6 +40,12 @@ struct HitCount {
   std::uint32_t hits = 0;
   std::uint32_t sum_x = 0;  // of the hits' places within the cell, 2^-kCentroidBits of a cell
   std::uint32_t sum_y = 0;
+
+  void Add(const HitCount& other) {
+    hits += other.hits;
+    sum_x += other.sum_x;
+    sum_y += other.sum_y;
+  }
 };
 
 // Counts of the rows [first_row, last_row) of the grid.
@@ -76,6 +82,25 @@ class Band {
     const std::size_t index = Index(end_column, end_row);
     ++visits_[index];
     if (hit) AddHit(end, &hits_[index]);
+  }
+
+  /// What follows is of a newer drive.
+  void BeginDrive() {
+    older_visits_.swap(visits_);
+    older_hits_.swap(hits_);
+    visits_.assign(older_visits_.size(), 0);
+    hits_.assign(older_hits_.size(), {});
+  }
+
+  /// Of a cell that the drive saw often enough to tell a wall by, it alone is believed; elsewhere
+  /// what older ones saw counts as well.
+  void EndDrive(const GridOptions& options) {
+    const double enough = options.min_hits / options.occupied_ratio;
+    for (std::size_t index = 0; index < older_visits_.size(); ++index) {
+      if (visits_[index] >= enough) continue;
+      visits_[index] += older_visits_[index];
+      hits_[index].Add(older_hits_[index]);
+    }
   }
 
   // Sets the band's cells, and returns its wall points.
@@ -154,6 +179,9 @@ class Band {
   std::int64_t width_;
   std::vector<std::uint32_t> visits_;  // beams that crossed or hit the cell
   std::vector<HitCount> hits_;
+  // Of the drives before, where older ones are to be forgotten.
+  std::vector<std::uint32_t> older_visits_;
+  std::vector<HitCount> older_hits_;
 };
 
 struct BoxedScan {
@@ -216,10 +244,16 @@ OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor
     BeamDirections cache;
     for (int index = next_band++; index < bands; index = next_band++) {
       Band band(index * kBandRows, std::min((index + 1) * kBandRows, grid.height), grid.width);
+      std::size_t drive = chosen.front().posed->drive;
       for (const BoxedScan& scan : chosen) {
         if (CellOf(scan.box.high.y - corner.y) < band.first_row() ||
             CellOf(scan.box.low.y - corner.y) >= band.last_row()) {
           continue;
+        }
+        if (options.forget && scan.posed->drive != drive) {
+          band.EndDrive(options);
+          band.BeginDrive();
+          drive = scan.posed->drive;
         }
         ForEachBeam(*scan.posed, options, &cache,
                     [&](const FixedPoint& start, const FixedPoint& end, bool hit) {
@@ -227,6 +261,7 @@ OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor
                                 {end.x - corner.x, end.y - corner.y}, hit);
                     });
       }
+      band.EndDrive(options);
       walls[static_cast<std::size_t>(index)] = band.Classify(options, &grid);
     }
   };

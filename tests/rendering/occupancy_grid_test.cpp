@@ -262,5 +262,47 @@ TEST(RenderGrid, BeamsLongerThanSlopesAllowAreCut) {
   EXPECT_TRUE(grid.walls.empty());
 }
 
+// The wall at x = 4 m of a room is taken away, or one at 3 m is built before it.
+TEST(OccupancyGrid, OfDrivesTheNewestIsBelievedWhereItSaw) {
+  const auto pose = [](int i) { return Pose2{1.02 + 0.013 * i, 2.03 - 0.011 * i, 0.3}; };
+  // Scans of the room as each drive found it; 0: the drive saw nothing.
+  const auto drawn = [&](double second_width, int passes, bool forget) {
+    std::vector<LaserScan> seen;
+    for (int i = 0; i < 30; ++i) seen.push_back(ScanInRoom(pose(i), 4.0, 4.0));
+    for (int i = 0; i < passes; ++i) {
+      seen.push_back(ScanInRoom(pose(i), second_width, 4.0));
+      if (second_width == 0.0) seen.back().ranges.assign(181, kInvalidRange);
+    }
+    std::vector<PosedScan> scans;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const bool is_first = i < 30;
+      scans.push_back({pose(static_cast<int>(is_first ? i : i - 30)), 0, &seen[i],
+                       is_first ? std::size_t{0} : std::size_t{1}});
+    }
+    GridOptions options;
+    options.forget = forget;
+    return RenderGrid(scans, 0, options);
+  };
+  const auto walls_at = [](const OccupancyGrid& grid, double x) {
+    return std::count_if(grid.walls.begin(), grid.walls.end(), [&](const WallPoint& wall) {
+      return std::abs(wall.x - x) < 0.051 && wall.y > 0.5 && wall.y < 3.5;
+    });
+  };
+  const auto old_walls = walls_at(drawn(4.0, 1, false), 4.0);
+  ASSERT_GT(old_walls, 50);
+  EXPECT_GT(walls_at(drawn(6.0, 25, false), 4.0), old_walls / 2) << "not asked to forget";
+  const OccupancyGrid seen_through = drawn(6.0, 25, true);
+  EXPECT_EQ(walls_at(seen_through, 4.0), 0);
+  EXPECT_GT(walls_at(seen_through, 6.0), 30);
+  const OccupancyGrid built = drawn(3.0, 25, true);
+  EXPECT_GT(walls_at(built, 3.0), 50);
+  EXPECT_EQ(walls_at(built, 4.0), old_walls) << "what stands behind is not known to be gone";
+  // Seen once, or not at all, is not enough.
+  EXPECT_GE(walls_at(drawn(6.0, 1, true), 4.0), old_walls - 2);
+  EXPECT_EQ(walls_at(drawn(0.0, 30, true), 4.0), old_walls);
+  // One drive alone is drawn as ever.
+  EXPECT_EQ(drawn(4.0, 0, true).cells, drawn(4.0, 0, false).cells);
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -21,6 +21,9 @@ struct GridOptions {
   double free_range_without_return_m = 0.0;
   double occupied_ratio = 0.25;  ///< share of hits among visits from which a cell is a wall
   int min_hits = 2;  ///< hits a wall cell needs at the least; with fewer it stays unknown
+  /// Where a newer drive saw enough of a cell to tell a wall, what older ones saw of it is
+  /// forgotten: walls that were taken away, doors that are open now. Scans are in order of drives.
+  bool forget = false;
   int threads = 1;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct PosedScan {
   Pose2 T_world_robot;
   std::int32_t floor = 0;
   const LaserScan* scan = nullptr;  ///< outlives the rendering
+  std::size_t drive = 0;            ///< later ones are newer
 };
 
 }  // namespace masked_mapper
