@@ -12,9 +12,9 @@
 namespace masked_mapper {
 
 struct OdometryMending {
-  double scan_clock_s = 0.0;   ///< s by which the stamps of scans are ahead of the odometry's
-  double travel_factor = 1.0;  ///< true travel over what wheels say
-  double turn_factor = 1.0;    ///< the same of turns
+  double scan_clock_s = 0.0;    ///< s by which the stamps of scans are ahead of the odometry's
+  double travel_factor = 1.0;   ///< true travel over what wheels say
+  double turn_factor = 1.0;     ///< the same of turns
   bool turns_left_out = false;  ///< turns by wheels are of no use, the length of their way is
   /// In which wheels say nothing of use, by the stamps of scans as they are read with
   /// `scan_clock_s` taken off; in order, ends included.
@@ -26,8 +26,9 @@ struct OdometryMending {
   }
 };
 
-/// The same log mended. Where turns are left out, the wheels' path goes straight on along x. Scans keep their `log_stamp`; where wheels are left out they come without
-/// odometry, and so does nothing else of the wheels. In order of the new stamps.
+/// The same log mended. Scans keep their `log_stamp`; where wheels are left out they come without
+/// odometry, and so does nothing else of the wheels. Where turns are left out, the wheels' path
+/// goes straight on along x. In order of the new stamps.
 std::unique_ptr<LogReader> Mended(std::unique_ptr<LogReader> log, OdometryMending mending);
 
 }  // namespace masked_mapper
