@@ -2,6 +2,7 @@
 #include "masked_mapper/joining/floor_joining.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -26,13 +27,79 @@ MapPart PartOn(const BuildingMap& map, const std::vector<bool>& levels) {
           RunsOf(map.trajectory, levels, [](const TrajectoryPose& pose) { return pose.floor; })};
 }
 
-// The level that the robot came from when it first reached `level`.
-std::optional<std::size_t> ReachedFrom(const FloorTimeline& floors, std::size_t level) {
-  for (std::size_t i = 1; i < floors.intervals.size(); ++i) {
-    if (floors.intervals[i].level == level) return floors.intervals[i - 1].level;
+/// Which levels may be one, from all that is known of them so far.
+class Identities {
+ public:
+  Identities(const FloorTimeline& floors, const StoreyOptions& storeys)
+      : changes_(ChangesOf(floors)), storeys_(storeys) {
+    for (std::size_t level = 0; level < floors.levels.size(); ++level) is_level_.push_back(level);
+    Settle();
   }
-  return std::nullopt;
-}
+
+  const std::vector<std::size_t>& is_level() const { return is_level_; }
+  bool IsKnown(std::size_t level) const { return heights_[is_level_[level]].measured; }
+
+  /// Not those that the robot went to or from without a stop, nor those at a measured height.
+  bool AreApart(std::size_t older, std::size_t newer) const {
+    const std::size_t one = is_level_[older];
+    const std::size_t other = is_level_[newer];
+    return heights_[one].root == heights_[other].root ||
+           std::any_of(changes_.begin(), changes_.end(), [&](const FloorChange& change) {
+             const auto ends = std::minmax(is_level_[change.from], is_level_[change.to]);
+             return change.from != change.to && ends == std::minmax(one, other);
+           });
+  }
+
+  /// Of the older levels, one at least may be it.
+  bool MayBeOlder(std::size_t level) const {
+    for (std::size_t older = 0; older < level; ++older) {
+      if (!AreApart(older, level)) return true;
+    }
+    return false;
+  }
+
+  /// With all that follows from their heights.
+  void Join(std::size_t older, std::size_t newer) {
+    Replace(is_level_[newer], is_level_[older]);
+    Settle();
+  }
+
+ private:
+  void Replace(std::size_t gone, std::size_t by) {
+    std::replace(is_level_.begin(), is_level_.end(), std::max(gone, by), std::min(gone, by));
+  }
+
+  void Settle() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      std::vector<LevelStep> steps;
+      for (const FloorChange& change : changes_) {
+        const std::size_t from = is_level_[change.from];
+        const std::size_t to = is_level_[change.to];
+        if (!change.climb || from == to) continue;
+        steps.push_back({from, to, *change.climb, std::max(change.climb_sigma, kLeastSigma)});
+      }
+      heights_ = EstimateLevelHeights(is_level_.size(), steps);
+      for (std::size_t b = 1; b < heights_.size() && !changed; ++b) {
+        for (std::size_t a = 0; a < b && is_level_[b] == b && !changed; ++a) {
+          if (is_level_[a] != a || heights_[a].root != heights_[b].root ||
+              std::abs(heights_[a].elevation - heights_[b].elevation) > 0.5 * storeys_.min_gap) {
+            continue;
+          }
+          Replace(b, a);
+          changed = true;
+        }
+      }
+    }
+  }
+
+  static constexpr double kLeastSigma = 1e-3;  // m
+
+  std::vector<FloorChange> changes_;
+  StoreyOptions storeys_;
+  std::vector<std::size_t> is_level_;  ///< the first level that each is
+  std::vector<LevelHeight> heights_;
+};
 
 /// Of a level against all before it.
 PieceQuestion QuestionOf(const BuildingMap& map, std::size_t level,
@@ -55,7 +122,8 @@ PieceQuestion QuestionOf(const BuildingMap& map, std::size_t level,
 }
 
 // Levels that are another are taken out, and the rest count on without a gap.
-FloorTimeline Merged(const FloorTimeline& floors, const std::vector<std::size_t>& is_level) {
+FloorTimeline Merged(const FloorTimeline& floors, const std::vector<std::size_t>& is_level,
+                     const StoreyOptions& storeys) {
   FloorTimeline merged;
   merged.levels.clear();
   std::vector<std::size_t> place(floors.levels.size());
@@ -63,11 +131,15 @@ FloorTimeline Merged(const FloorTimeline& floors, const std::vector<std::size_t>
     if (is_level[level] != level) continue;
     place[level] = merged.levels.size();
     merged.levels.push_back(floors.levels[level]);
-    merged.levels.back().identity_known = true;
   }
   merged.intervals = floors.intervals;
   for (FloorInterval& interval : merged.intervals) {
     interval.level = place[is_level[interval.level]];
+  }
+  SettleElevations(storeys, merged);
+  for (FloorLevel& level : merged.levels) {
+    if (level.identity_known) level.open.clear();  // another tied it
+    level.identity_known = true;
   }
   return merged;
 }
@@ -89,36 +161,31 @@ DriveJoinOptions FloorJoinOptions::PlacesOfOneDrive() {
 }
 
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
-                        const FloorJoinOptions& options, const MatcherOptions& matcher) {
+                        const FloorJoinOptions& options, const StoreyOptions& storeys,
+                        const MatcherOptions& matcher) {
   const std::vector<std::string> names = FloorNames(floors.levels);
-  std::vector<std::size_t> is_level;
+  Identities identities(floors, storeys);
   FloorJoining joining;
   FloorTimeline told = floors;
   for (std::size_t level = 0; level < floors.levels.size(); ++level) {
-    is_level.push_back(level);
-    const std::optional<std::size_t> from = ReachedFrom(floors, level);
-    if (floors.levels[level].identity_known || !from) continue;
-    const bool only_the_one_left =
-        std::all_of(is_level.begin(), is_level.end() - 1,
-                    [&](std::size_t older) { return older == is_level[*from]; });
-    if (only_the_one_left) continue;
-    const PieceSearchResult found =
-        FindPiece(map, QuestionOf(map, level, is_level, options.ride), options.places, matcher);
+    if (identities.IsKnown(level) || !identities.MayBeOlder(level)) continue;
+    const PieceSearchResult found = FindPiece(
+        map, QuestionOf(map, level, identities.is_level(), options.ride), options.places, matcher);
     std::string reason = found.reason;
     if (found.placement) {
       const auto older = static_cast<std::size_t>(found.placement->older_floor_of.begin()->second);
-      if (older != is_level[*from]) {
-        is_level[level] = older;
+      if (!identities.AreApart(older, level)) {
+        identities.Join(older, level);
         joining.any_joined = true;
         joining.notes.push_back("floor " + names[older] + " was met again: " + reason +
                                 " it, and no sensor tells floors apart");
         continue;
       }
-      reason = "it looks like floor " + names[older] + ", which was left for it";
+      reason = "it looks like floor " + names[older] + ", which it is not, for all that is known";
     }
-    told.levels[level].open = reason;
+    told.levels[level].open = "no sensor tells, and " + reason;
   }
-  joining.floors = Merged(told, is_level);
+  joining.floors = Merged(told, identities.is_level(), storeys);
   return joining;
 }
 

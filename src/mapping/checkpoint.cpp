@@ -61,7 +61,7 @@ void Serialize(Archive& archive, FloorLevel& level) {
 template <class Archive>
 void Serialize(Archive& archive, FloorInterval& interval) {
   archive(interval.start, interval.level, interval.in_transit, interval.travelled_m,
-          interval.by.bits);
+          interval.by.bits, interval.climb, interval.climb_sigma);
 }
 
 template <class Archive>

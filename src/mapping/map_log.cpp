@@ -2,6 +2,7 @@
 #include "masked_mapper/mapping/map_log.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include "masked_mapper/mapping/state_archive.hpp"
 #include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -31,7 +33,18 @@ std::string OpenQuestion(const FloorTimeline& floors, const FloorChange& change)
   return is_first ? floors.levels[change.to].open : "";
 }
 
-std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStatistics& log) {
+// What sensors measured of a ride, where it cannot be the way between these floors.
+std::string Contradiction(const FloorChange& change, const StoreyOptions& storeys) {
+  constexpr double kMostSigmas = 4.0;
+  if (!change.climb) return "";
+  const double off = std::abs(*change.climb - change.height_m);
+  if (off <= std::max(0.5 * storeys.min_gap, kMostSigmas * change.climb_sigma)) return "";
+  return "it is taken for one that is " + FixedText(change.height_m, 1) +
+         " m above the one left, and sensors climbed " + FixedText(*change.climb, 1) + " m";
+}
+
+std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStatistics& log,
+                                      const StoreyOptions& storeys) {
   constexpr std::pair<FloorSource, const char*> kNames[] = {
       {FloorSource::kLabels, "labels"},
       {FloorSource::kPressure, "pressure"},
@@ -45,6 +58,7 @@ std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStat
                           change.sigma_m,
                           {},
                           OpenQuestion(floors, change)};
+    if (transit.open.empty()) transit.open = Contradiction(change, storeys);
     for (const auto& [source, name] : kNames) {
       if (change.by.Has(source)) transit.by.emplace_back(name);
     }
@@ -117,7 +131,7 @@ class LogDrive {
     result.seconds += spent_;
     result.seconds.read += read_seconds_;
     result.motion_source = settled_.motion.source;
-    result.transits = TransitsOf(survey_.floors, result.log);
+    result.transits = TransitsOf(survey_.floors, result.log, settled_.floors.storeys);
     result.drives.emplace_back();
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
@@ -157,7 +171,8 @@ class LogDrive {
   bool FloorsWereJoined(const BuildingMap& map) {
     const StageTimer timer(spent_.matching);
     const FloorJoining joining =
-        JoinFloors(map, survey_.floors, settled_.floor_joins, mapper_->options().closures.matcher);
+        JoinFloors(map, survey_.floors, settled_.floor_joins, settled_.floors.storeys,
+                   mapper_->options().closures.matcher);
     survey_.floors = joining.floors;
     if (!joining.any_joined) return false;
     survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());

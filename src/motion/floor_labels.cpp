@@ -215,14 +215,18 @@ std::vector<FloorInterval> IntervalsOf(const std::vector<Stay>& stays,
     FloorSources by;
     by.Add(FloorSource::kLabels);
     for (const FloorTransit& transit : change.transits) by.Add(transit.by);
-    intervals.push_back({span.start, left, true, 0.0, by});
+    const FloorInterval on_the_way{span.start,         left, true, 0.0, by, change.Climb(),
+                                   change.ClimbSigma()};
+    intervals.push_back(on_the_way);
     if (left == reached) continue;
     double middle = 0.5 * (span.start + span.end);
     if (!change.transits.empty()) {
       middle = 0.5 * (change.transits.front().middle + change.transits.back().middle);
       middle = std::clamp(middle, span.start, span.end);
     }
-    intervals.push_back({middle, reached, true, 0.0, by});
+    intervals.push_back(on_the_way);
+    intervals.back().start = middle;
+    intervals.back().level = reached;
   }
   intervals.push_back({start, stays.back().level, false});
   if (stays.back().span.end < kInfinity) {

@@ -50,6 +50,8 @@ std::vector<FloorChange> ChangesOf(const FloorTimeline& timeline) {
     for (; first < intervals.size() && intervals[first].in_transit; ++first) {
       change.to = intervals[first].level;
       change.by.Add(intervals[first].by);
+      change.climb = intervals[first].climb;
+      change.climb_sigma = intervals[first].climb_sigma;
     }
     change.t_in = first < intervals.size() ? intervals[first].start : kInfinity;
     if (first < intervals.size()) change.to = intervals[first].level;
@@ -58,6 +60,7 @@ std::vector<FloorChange> ChangesOf(const FloorTimeline& timeline) {
       const FloorLevel& to = timeline.levels[change.to];
       change.height_m = to.elevation - from.elevation;
       change.sigma_m = std::hypot(from.elevation_sigma, to.elevation_sigma);
+      if (change.climb) change.sigma_m = std::min(change.sigma_m, change.climb_sigma);
     }
     changes.push_back(change);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace masked_mapper {
@@ -12,23 +13,18 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostLevels = 200;  // more are noise, and go to the nearest
+constexpr double kLeastSigma = 1e-3;      // m
 
 /// The level of each spell between transits (one more than transits), numbered by first use.
 struct Assignment {
-  std::vector<std::size_t> level_of_spell;
-  std::vector<bool> identity_known;  ///< of each level
-
-  std::size_t AddLevel(bool known) {
-    identity_known.push_back(known);
-    return identity_known.size() - 1;
-  }
+  std::vector<std::size_t> level_of_spell = {0};
+  std::size_t level_count = 1;
 };
 
 /// Spell by spell: the known level nearest to where the climb leads, if it is near enough.
 Assignment AssignInOrder(const std::vector<FloorTransit>& transits, const StoreyOptions& options) {
   Assignment assignment;
   std::vector<double> elevations = {0.0};
-  assignment.level_of_spell = {assignment.AddLevel(true)};
   for (const FloorTransit& transit : transits) {
     const std::size_t left = assignment.level_of_spell.back();
     std::optional<std::size_t> reached;
@@ -51,7 +47,7 @@ Assignment AssignInOrder(const std::vector<FloorTransit>& transits, const Storey
       const double highest = *std::max_element(elevations.begin(), elevations.end());
       elevations.push_back(highest + 1e4);
     }
-    if (!reached) reached = assignment.AddLevel(transit.climb.has_value());
+    if (!reached) reached = assignment.level_count++;
     assignment.level_of_spell.push_back(*reached);
   }
   return assignment;
@@ -64,7 +60,7 @@ std::vector<LevelStep> StepsOf(const std::vector<FloorTransit>& transits,
     const std::size_t from = assignment.level_of_spell[k];
     const std::size_t to = assignment.level_of_spell[k + 1];
     if (!transits[k].climb || from == to) continue;
-    steps.push_back({from, to, *transits[k].climb, std::max(transits[k].climb_sigma, 1e-3)});
+    steps.push_back({from, to, *transits[k].climb, std::max(transits[k].climb_sigma, kLeastSigma)});
   }
   return steps;
 }
@@ -75,7 +71,7 @@ Assignment MergedWhereNear(Assignment assignment, std::vector<LevelHeight> heigh
   const auto find_equal = [&](std::size_t b) -> std::optional<std::size_t> {
     for (std::size_t a = 0; a < b; ++a) {
       const double gap = std::abs(heights[a].elevation - heights[b].elevation);
-      if (heights[a].measured && heights[b].measured && gap <= 0.5 * options.min_gap) return a;
+      if (heights[a].root == heights[b].root && gap <= 0.5 * options.min_gap) return a;
     }
     return std::nullopt;
   };
@@ -90,37 +86,40 @@ Assignment MergedWhereNear(Assignment assignment, std::vector<LevelHeight> heigh
       if (level > b) --level;
     }
     heights.erase(heights.begin() + static_cast<std::ptrdiff_t>(b));
-    assignment.identity_known.erase(assignment.identity_known.begin() +
-                                    static_cast<std::ptrdiff_t>(b));
+    --assignment.level_count;
   }
   return assignment;
 }
 
-}  // namespace
-
-std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
-                                              const std::vector<LevelStep>& steps) {
-  std::vector<LevelHeight> heights(level_count);
-  if (level_count == 0) return heights;
-  heights[0].measured = true;
-  for (bool grew = true; grew;) {
-    grew = false;
+/// The first level that steps lead to each from.
+std::vector<std::size_t> RootsOf(std::size_t level_count, const std::vector<LevelStep>& steps) {
+  std::vector<std::size_t> roots(level_count);
+  std::iota(roots.begin(), roots.end(), std::size_t{0});
+  for (bool changed = true; changed;) {
+    changed = false;
     for (const LevelStep& step : steps) {
-      if (heights[step.from].measured == heights[step.to].measured) continue;
-      heights[step.from].measured = heights[step.to].measured = grew = true;
+      const std::size_t root = std::min(roots[step.from], roots[step.to]);
+      changed = changed || roots[step.from] != root || roots[step.to] != root;
+      roots[step.from] = roots[step.to] = root;
     }
   }
-  // Unknowns are the measured levels but the first, which is 0.
-  std::vector<Eigen::Index> unknown(level_count, -1);
+  return roots;
+}
+
+/// Of the levels that have one root.
+void EstimateAbove(std::size_t root, const std::vector<LevelStep>& steps,
+                   std::vector<LevelHeight>& heights) {
+  // Unknowns are all but the root, which is 0.
+  std::vector<Eigen::Index> unknown(heights.size(), -1);
   Eigen::Index count = 0;
-  for (std::size_t level = 1; level < level_count; ++level) {
-    if (heights[level].measured) unknown[level] = count++;
+  for (std::size_t level = root + 1; level < heights.size(); ++level) {
+    if (heights[level].root == root) unknown[level] = count++;
   }
-  if (count == 0) return heights;
+  if (count == 0) return;
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd weighted = Eigen::VectorXd::Zero(count);
   for (const LevelStep& step : steps) {
-    if (!heights[step.from].measured) continue;
+    if (heights[step.from].root != root) continue;
     const double weight = 1.0 / (step.sigma * step.sigma);
     const Eigen::Index from = unknown[step.from];
     const Eigen::Index to = unknown[step.to];
@@ -134,13 +133,56 @@ std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
   const Eigen::VectorXd elevations = solver.solve(weighted);
   const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
-  for (std::size_t level = 1; level < level_count; ++level) {
+  for (std::size_t level = root + 1; level < heights.size(); ++level) {
     const Eigen::Index i = unknown[level];
     if (i < 0) continue;
     heights[level].elevation = elevations(i);
     heights[level].sigma = std::sqrt(std::max(0.0, covariance(i, i)));
   }
+}
+
+}  // namespace
+
+std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
+                                              const std::vector<LevelStep>& steps) {
+  std::vector<LevelHeight> heights(level_count);
+  const std::vector<std::size_t> roots = RootsOf(level_count, steps);
+  for (std::size_t level = 0; level < level_count; ++level) {
+    heights[level].root = roots[level];
+    heights[level].measured = roots[level] == 0;
+  }
+  for (std::size_t level = 0; level < level_count; ++level) {
+    if (roots[level] == level) EstimateAbove(level, steps, heights);
+  }
   return heights;
+}
+
+void SettleElevations(const StoreyOptions& options, FloorTimeline& timeline) {
+  std::vector<LevelStep> steps;
+  for (const FloorChange& change : ChangesOf(timeline)) {
+    if (!change.climb || change.from == change.to) continue;
+    steps.push_back(
+        {change.from, change.to, *change.climb, std::max(change.climb_sigma, kLeastSigma)});
+  }
+  const std::vector<LevelHeight> heights = EstimateLevelHeights(timeline.levels.size(), steps);
+  double highest = 0.0;
+  for (std::size_t root = 0; root < heights.size(); ++root) {
+    if (heights[root].root != root) continue;
+    double lowest = 0.0;
+    for (const LevelHeight& height : heights) {
+      if (height.root == root) lowest = std::min(lowest, height.elevation);
+    }
+    const double shift = root == 0 ? 0.0 : highest + options.typical_height - lowest;
+    for (std::size_t i = root; i < heights.size(); ++i) {
+      if (heights[i].root != root) continue;
+      FloorLevel& level = timeline.levels[i];
+      level.elevation = heights[i].elevation + shift;
+      level.elevation_sigma =
+          root == 0 ? heights[i].sigma : std::hypot(options.typical_height, heights[i].sigma);
+      level.elevation_measured = level.identity_known = root == 0;
+      highest = std::max(highest, level.elevation);
+    }
+  }
 }
 
 FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
@@ -155,29 +197,15 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
   if (ends_in_transit) transits.pop_back();
 
   Assignment assignment = AssignInOrder(transits, options);
-  std::vector<LevelHeight> heights;
-  for (std::size_t levels = 0; levels != assignment.identity_known.size();) {
-    levels = assignment.identity_known.size();
-    heights = EstimateLevelHeights(levels, StepsOf(transits, assignment));
+  for (std::size_t before = 0; before != assignment.level_count;) {
+    before = assignment.level_count;
+    const std::vector<LevelHeight> heights =
+        EstimateLevelHeights(before, StepsOf(transits, assignment));
     assignment = MergedWhereNear(std::move(assignment), heights, options);
   }
 
   FloorTimeline timeline;
-  timeline.levels.clear();
-  double highest = 0.0;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    FloorLevel level;
-    level.elevation = heights[i].elevation;
-    level.elevation_sigma = heights[i].sigma;
-    level.elevation_measured = heights[i].measured;
-    level.identity_known = assignment.identity_known[i];
-    if (!heights[i].measured) {
-      level.elevation = highest + options.typical_height;
-      level.elevation_sigma = options.typical_height;
-    }
-    highest = std::max(highest, level.elevation);
-    timeline.levels.push_back(level);
-  }
+  timeline.levels.resize(assignment.level_count);
   timeline.intervals.clear();
   if (starts_in_transit) timeline.intervals.push_back({-kInfinity, 0, true, 0.0, all.front().by});
   timeline.intervals.push_back({first_arrival, 0, false});
@@ -185,10 +213,14 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
     const FloorTransit& transit = transits[k];
     const std::size_t left = assignment.level_of_spell[k];
     const std::size_t reached = assignment.level_of_spell[k + 1];
-    timeline.intervals.push_back({transit.start, left, true, 0.0, transit.by});
+    const FloorInterval on_the_way{transit.start,      left, true, 0.0, transit.by, transit.climb,
+                                   transit.climb_sigma};
+    timeline.intervals.push_back(on_the_way);
     if (left != reached) {
       const double middle = std::clamp(transit.middle, transit.start, transit.end);
-      timeline.intervals.push_back({middle, reached, true, 0.0, transit.by});
+      timeline.intervals.push_back(on_the_way);
+      timeline.intervals.back().start = middle;
+      timeline.intervals.back().level = reached;
     }
     timeline.intervals.push_back({transit.end, reached, false});
   }
@@ -196,6 +228,7 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
     timeline.intervals.push_back(
         {last_departure, assignment.level_of_spell.back(), true, 0.0, all.back().by});
   }
+  SettleElevations(options, timeline);
   return timeline;
 }
 

@@ -40,7 +40,7 @@ TEST(JoinFloors, AFloorMetAgainIsOneFloor) {
   const RingDrive drive(2.4, 0.2);
   const FloorTimeline floors = ThreeVisits(drive);
   ASSERT_TRUE(HasUnknownFloors(floors));
-  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {});
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {}, {});
   EXPECT_TRUE(joining.any_joined);
   EXPECT_EQ(joining.notes.size(), 1u);
   // The level in the middle was reached from the first, and is another.
@@ -53,6 +53,24 @@ TEST(JoinFloors, AFloorMetAgainIsOneFloor) {
               floors.intervals[i].level == 1 ? std::size_t{1} : std::size_t{0});
     EXPECT_EQ(joining.floors.intervals[i].start, floors.intervals[i].start);
   }
+}
+
+TEST(JoinFloors, WhatAClimbTiesToAFloorMetAgainIsKnownWithIt) {
+  const RingDrive drive(2.4, 0.2);
+  FloorTimeline floors = ThreeVisits(drive);
+  for (FloorInterval& interval : floors.intervals) {
+    if (interval.in_transit && interval.start > floors.intervals[3].start) {
+      interval.climb = -4.2;
+      interval.climb_sigma = 0.1;
+    }
+  }
+  floors.intervals[4].climb = -4.2;
+  floors.intervals[4].climb_sigma = 0.1;
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {}, {});
+  ASSERT_EQ(joining.floors.levels.size(), 2u);
+  EXPECT_NEAR(joining.floors.levels[1].elevation, 4.2, 1e-9);
+  EXPECT_TRUE(joining.floors.levels[1].elevation_measured);
+  EXPECT_TRUE(joining.floors.levels[1].open.empty());
 }
 
 TEST(JoinFloors, AnotherFloorAtTheSamePlaceStaysApart) {
@@ -72,7 +90,7 @@ TEST(JoinFloors, AnotherFloorAtTheSamePlaceStaysApart) {
         other.Scan(Pose2{1.0, 1.0, 0.0} * drive.truth[i], 181, 270.0, &random, 0.01);
     scan.ranges = seen.ranges;
   }
-  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {});
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {}, {});
   EXPECT_FALSE(joining.any_joined);
   EXPECT_EQ(joining.floors.levels.size(), 3u);
   EXPECT_FALSE(HasUnknownFloors(joining.floors)) << "it was looked at, and is another";
@@ -81,11 +99,11 @@ TEST(JoinFloors, AnotherFloorAtTheSamePlaceStaysApart) {
 TEST(JoinFloors, KnownFloorsAndEmptyMapsAreLeftAlone) {
   const FloorTimeline one;
   EXPECT_FALSE(HasUnknownFloors(one));
-  EXPECT_FALSE(JoinFloors({}, one, {}, {}).any_joined);
+  EXPECT_FALSE(JoinFloors({}, one, {}, {}, {}).any_joined);
   FloorTimeline unknown;
   unknown.levels.push_back({"", 3.5, 3.5, false, false, ""});
   unknown.levels.push_back({"", 7.0, 3.5, false, false, ""});
-  const FloorJoining joining = JoinFloors({}, unknown, {}, {});
+  const FloorJoining joining = JoinFloors({}, unknown, {}, {}, {});
   EXPECT_FALSE(joining.any_joined);
   EXPECT_EQ(joining.floors.levels.size(), 3u);
 }

@@ -150,5 +150,26 @@ TEST(TimelineOfTransits, UnknownClimbsOpenLevelsThatMayBeAny) {
   EXPECT_NEAR(timeline.levels[2].elevation, 7.0, 1e-12);
 }
 
+TEST(TimelineOfTransits, BehindAnUnknownClimbHeightsCountFromALevelOfTheirOwn) {
+  std::vector<FloorTransit> transits = Rides({0.0, 3.0, 4.0, -4.0});
+  transits[0].climb.reset();
+  const FloorTimeline timeline = TimelineOfTransits(transits, {});
+  ASSERT_EQ(timeline.levels.size(), 4U);
+  for (std::size_t level = 1; level < 4; ++level) {
+    EXPECT_FALSE(timeline.levels[level].identity_known);
+    EXPECT_FALSE(timeline.levels[level].elevation_measured);
+  }
+  EXPECT_NEAR(timeline.levels[1].elevation, 3.5, 1e-9);
+  EXPECT_NEAR(timeline.levels[2].elevation, 6.5, 1e-9);
+  EXPECT_NEAR(timeline.levels[3].elevation, 10.5, 1e-9);
+  EXPECT_EQ(timeline.At(450.0).level, 2U);
+  const std::vector<FloorChange> changes = ChangesOf(timeline);
+  ASSERT_EQ(changes.size(), 4U);
+  EXPECT_FALSE(changes[0].climb);
+  EXPECT_NEAR(*changes[1].climb, 3.0, 1e-9);
+  EXPECT_NEAR(changes[1].height_m, 3.0, 1e-9);
+  EXPECT_LT(changes[1].sigma_m, 1.0) << "measured there, whatever is known of the first";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -11,6 +11,7 @@
 #include "masked_mapper/joining/piece_search.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/floor_transit.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 
 namespace masked_mapper {
@@ -35,9 +36,11 @@ struct FloorJoining {
 bool HasUnknownFloors(const FloorTimeline& floors);
 
 /// Looks for each level of unknown identity on the older ones, near where motion puts it. It is
-/// none that it was reached from; where it fits that one, too, the storeys are of one plan, and
-/// fits say nothing. `map` was made with `floors`.
+/// none that it was reached from, or that a measured climb tells from it; where it fits such a one,
+/// too, the storeys are of one plan, and fits say nothing. Levels that climbs tie to it are known
+/// with it, by their heights. `map` was made with `floors`.
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
-                        const FloorJoinOptions& options, const MatcherOptions& matcher);
+                        const FloorJoinOptions& options, const StoreyOptions& storeys,
+                        const MatcherOptions& matcher);
 
 }  // namespace masked_mapper

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ struct FloorInterval {
   /// goes nowhere, stairs do. Known to none of the sources; NoteTravel() fills it in.
   double travelled_m = 0.0;
   FloorSources by = {};  ///< in transit: what told it
+  /// m up, of the whole transit, as sensors measured it; empty: none did.
+  std::optional<double> climb = std::nullopt;
+  double climb_sigma = 0.0;  ///< m
 };
 
 struct FloorTimeline {
@@ -66,8 +70,10 @@ struct FloorChange {
   double t_in = 0.0;   ///< s; plus infinity: the log ends in it
   std::size_t from = 0;
   std::size_t to = 0;
-  double height_m = 0.0;  ///< up
+  double height_m = 0.0;  ///< up, from the one floor to the other
   double sigma_m = 0.0;
+  std::optional<double> climb;  ///< m up, as it was measured there and then
+  double climb_sigma = 0.0;     ///< m
   FloorSources by;
 };
 

@@ -39,14 +39,20 @@ struct LevelStep {
 };
 
 struct LevelHeight {
-  double elevation = 0.0;  ///< m above level 0
+  double elevation = 0.0;  ///< m above level `root`
   double sigma = 0.0;      ///< m
-  bool measured = false;   ///< false: no steps lead here from level 0
+  std::size_t root = 0;    ///< the first level that steps lead here from
+  bool measured = false;   ///< steps lead here from level 0
 };
 
 /// Elevations of `level_count` levels from all steps at once, by least squares.
 std::vector<LevelHeight> EstimateLevelHeights(std::size_t level_count,
                                               const std::vector<LevelStep>& steps);
+
+/// Elevations of a timeline's levels from the climbs of its intervals. Levels that no climb ties to
+/// the first are laid above the others, at the heights that they were measured to have among
+/// themselves, and which floors they are is not known.
+void SettleElevations(const StoreyOptions& options, FloorTimeline& timeline);
 
 /// `all`: transits in order, not overlapping.
 FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
