@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "visit_agreement.hpp"
+#include "wall_crossings.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -134,6 +136,28 @@ class VisitCheck {
   std::vector<Visit> visits_;
 };
 
+std::vector<Doubt> DoubtsOfWays(const BuildingMap& map) {
+  std::vector<Doubt> doubts;
+  const std::vector<Visit> visits = VisitsOf(map);
+  for (const WallCrossing& crossing : FindWallCrossings(map, visits)) {
+    const Visit& driven = visits[crossing.driven];
+    const double stamp = map.kept_scans[driven.kept].scan.stamp;
+    const double seen = map.kept_scans[visits[crossing.seen].kept].scan.stamp;
+    Doubt doubt;
+    doubt.kind = DoubtKind::kWalls;
+    doubt.floor = driven.floor;
+    doubt.x = driven.T_world_robot.x;
+    doubt.y = driven.T_world_robot.y;
+    doubt.t_a = std::min(stamp, seen);
+    doubt.t_b = std::max(stamp, seen);
+    doubt.text = "the way at " + FixedText(stamp, 2) + " s leads through a wall that was seen at " +
+                 FixedText(seen, 2) +
+                 " s: a door, or one of both was on another floor or lies wrong";
+    doubts.push_back(doubt);
+  }
+  return doubts;
+}
+
 /// What a solved edge is off its measurement by.
 std::optional<Doubt> DoubtOf(const BuildingMap& map, Edge edge) {
   const bool is_closure = edge.kind == EdgeKind::kClosure;
@@ -193,14 +217,34 @@ std::vector<Doubt> DoubtsOfPieces(const BuildingMap& map) {
   return doubts;
 }
 
+/// Why a change of floor may lead elsewhere: what is said of it, or that it climbed what does not
+/// lie between these floors, as edits have them.
+std::string QuestionOf(const BuildingMap& map, const TransitRecord& transit, FloorId left,
+                       FloorId reached) {
+  constexpr double kHalfAStorey = 1.2;  // m
+  constexpr double kMostSigmas = 4.0;
+  if (!transit.open.empty()) return transit.open;
+  const Floor& from = map.graph.floors()[static_cast<std::size_t>(left)];
+  const Floor& to = map.graph.floors()[static_cast<std::size_t>(reached)];
+  const double apart = to.elevation - from.elevation;
+  const double off = std::abs(apart - transit.height_m);
+  if (off <= std::max(kHalfAStorey, kMostSigmas * transit.sigma_m)) return "";
+  return "it lies " + FixedText(apart, 1) + " m above the one left, and the way there climbed " +
+         FixedText(transit.height_m, 1) + " m";
+}
+
 std::vector<Doubt> DoubtsOfFloors(const BuildingMap& map) {
   std::vector<Doubt> doubts;
   for (const TransitRecord& transit : map.transits) {
-    if (transit.open.empty()) continue;
     const auto reached = std::find_if(
         map.trajectory.begin(), map.trajectory.end(),
         [&](const TrajectoryPose& pose) { return pose.stamp >= transit.t_in && !pose.in_transit; });
     if (reached == map.trajectory.end()) continue;
+    const auto left = std::find_if(std::make_reverse_iterator(reached), map.trajectory.rend(),
+                                   [](const TrajectoryPose& pose) { return !pose.in_transit; });
+    if (left == map.trajectory.rend()) continue;
+    const std::string question = QuestionOf(map, transit, left->floor, reached->floor);
+    if (question.empty()) continue;
     Doubt doubt;
     doubt.kind = DoubtKind::kFloor;
     doubt.floor = reached->floor;
@@ -209,7 +253,7 @@ std::vector<Doubt> DoubtsOfFloors(const BuildingMap& map) {
     doubt.t_a = transit.t_out;
     doubt.t_b = transit.t_in;
     doubt.text = "the floor that was reached at " + FixedText(transit.t_in, 2) +
-                 " s may be one that was there before: no sensor tells, and " + transit.open;
+                 " s may be another one: " + question;
     doubts.push_back(doubt);
   }
   return doubts;
@@ -224,6 +268,7 @@ const char* Name(DoubtKind kind) {
 
 std::vector<Doubt> FindDoubts(const BuildingMap& map) {
   std::vector<Doubt> doubts = VisitCheck(map).Find();
+  for (const Doubt& doubt : DoubtsOfWays(map)) doubts.push_back(doubt);
   for (const Edge& edge : map.graph.edges()) {
     if (const std::optional<Doubt> doubt = DoubtOf(map, edge)) doubts.push_back(*doubt);
   }

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "wall_crossings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace masked_mapper {
+namespace {
+
+constexpr double kCell = 1.0;          // m, no shorter than a step of the way
+constexpr double kLongestStep = 1.0;   // m between kept scans of one way
+constexpr double kFarthestWall = 5.0;  // m from the scanner: farther ones move with its heading
+constexpr double kWholeWall = 0.2;     // m between neighbouring hits of one wall
+constexpr double kBeside = 0.3;        // m of wall on either side of the way: no person is as wide
+constexpr double kOtherVisit = 15.0;   // m of travel
+constexpr double kOnePass = 5.0;       // m of travel
+constexpr double kAtDoor = 3.0;        // m from where a change of floor begins or ends
+constexpr int kLeastSeen = 3;          // scans
+
+/// How far along `from`-`to` another line crosses it, and how far along that; 0 to 1 is on both.
+bool Cross(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& one,
+           const Eigen::Vector2d& other) {
+  const Eigen::Vector2d way = to - from;
+  const Eigen::Vector2d wall = other - one;
+  const double area = way.x() * wall.y() - way.y() * wall.x();
+  if (std::abs(area) < 0.5 * way.norm() * wall.norm()) return false;  // along it
+  const Eigen::Vector2d apart = one - from;
+  const double on_way = (apart.x() * wall.y() - apart.y() * wall.x()) / area;
+  const double on_wall = (apart.x() * way.y() - apart.y() * way.x()) / area;
+  return on_way >= 0.0 && on_way < 1.0 && on_wall >= 0.0 && on_wall <= 1.0;
+}
+
+class Ways {
+ public:
+  explicit Ways(const std::vector<Visit>& visits) : visits_(visits) {
+    for (std::size_t i = 1; i < visits.size(); ++i) {
+      if (visits[i].floor != visits[i - 1].floor || visits[i].drive != visits[i - 1].drive ||
+          Distance(visits[i].T_world_robot, visits[i - 1].T_world_robot) > kLongestStep) {
+        continue;
+      }
+      steps_[CellOf(visits[i].T_world_robot.Translation(), visits[i].floor)].push_back(i);
+    }
+  }
+
+  /// Steps that cross from one point to another, each by its later end.
+  template <class Use>
+  void ForEachThrough(const Eigen::Vector2d& one, const Eigen::Vector2d& other, FloorId floor,
+                      Use use) const {
+    const auto middle = CellOf(0.5 * (one + other), floor);
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const auto cell = steps_.find({floor, std::get<1>(middle) + dx, std::get<2>(middle) + dy});
+        if (cell == steps_.end()) continue;
+        for (const std::size_t i : cell->second) {
+          if (Cross(visits_[i - 1].T_world_robot.Translation(),
+                    visits_[i].T_world_robot.Translation(), one, other)) {
+            use(i);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  using Cell = std::tuple<FloorId, int, int>;
+
+  static Cell CellOf(const Eigen::Vector2d& point, FloorId floor) {
+    return {floor, static_cast<int>(std::floor(point.x() / kCell)),
+            static_cast<int>(std::floor(point.y() / kCell))};
+  }
+
+  const std::vector<Visit>& visits_;
+  std::map<Cell, std::vector<std::size_t>> steps_;
+};
+
+/// Points of one scan in the world, in the order of its beams.
+std::vector<Eigen::Vector2d> HitsOf(const BuildingMap& map, const Visit& visit) {
+  std::vector<Eigen::Vector2d> hits;
+  const ScanPoints::ConstPtr points = PointsInRobot(map.kept_scans[visit.kept].scan);
+  for (const pcl::PointXY& point : *points) {
+    const Eigen::Vector2d in_robot(point.x, point.y);
+    if (in_robot.norm() <= kFarthestWall) hits.push_back(visit.T_world_robot * in_robot);
+  }
+  return hits;
+}
+
+/// Whether a wall goes on for long enough from hit to hit.
+bool GoesOn(const std::vector<Eigen::Vector2d>& hits, std::size_t from, std::ptrdiff_t step) {
+  std::size_t i = from;
+  while ((hits[i] - hits[from]).norm() < kBeside) {
+    const auto next = static_cast<std::ptrdiff_t>(i) + step;
+    if (next < 0 || next >= static_cast<std::ptrdiff_t>(hits.size())) return false;
+    const auto at = static_cast<std::size_t>(next);
+    if ((hits[at] - hits[i]).norm() > kWholeWall) return false;
+    i = at;
+  }
+  return true;
+}
+
+/// Where the robot left a floor for another, or reached it.
+std::vector<std::pair<FloorId, Eigen::Vector2d>> DoorsOf(const BuildingMap& map) {
+  std::vector<std::pair<FloorId, Eigen::Vector2d>> doors;
+  for (std::size_t i = 1; i < map.trajectory.size(); ++i) {
+    const TrajectoryPose& before = map.trajectory[i - 1];
+    const TrajectoryPose& pose = map.trajectory[i];
+    if (before.in_transit == pose.in_transit) continue;
+    const TrajectoryPose& outside = before.in_transit ? pose : before;
+    doors.emplace_back(outside.floor, outside.T_world_robot.Translation());
+  }
+  return doors;
+}
+
+}  // namespace
+
+std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
+                                            const std::vector<Visit>& visits) {
+  const Ways ways(visits);
+  std::map<std::size_t, std::vector<std::size_t>> seen_of_driven;
+  for (std::size_t seen = 0; seen < visits.size(); ++seen) {
+    const std::vector<Eigen::Vector2d> hits = HitsOf(map, visits[seen]);
+    for (std::size_t i = 0; i + 1 < hits.size(); ++i) {
+      if ((hits[i + 1] - hits[i]).norm() > kWholeWall) continue;
+      ways.ForEachThrough(hits[i], hits[i + 1], visits[seen].floor, [&](std::size_t driven) {
+        if (std::abs(visits[driven].travelled_m - visits[seen].travelled_m) < kOtherVisit) return;
+        if (GoesOn(hits, i, -1) && GoesOn(hits, i + 1, 1)) seen_of_driven[driven].push_back(seen);
+      });
+    }
+  }
+  const auto doors = DoorsOf(map);
+  const auto is_at_door = [&](const Visit& visit) {
+    return std::any_of(doors.begin(), doors.end(), [&](const auto& door) {
+      return door.first == visit.floor &&
+             (door.second - visit.T_world_robot.Translation()).norm() <= kAtDoor;
+    });
+  };
+  std::vector<WallCrossing> crossings;
+  for (auto& [driven, seen] : seen_of_driven) {
+    if (is_at_door(visits[driven])) continue;
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    if (seen.size() < kLeastSeen) continue;
+    if (!crossings.empty() &&
+        visits[driven].travelled_m - visits[crossings.back().driven].travelled_m < kOnePass) {
+      continue;
+    }
+    crossings.push_back({driven, seen.front()});
+  }
+  return crossings;
+}
+
+}  // namespace masked_mapper
