@@ -55,6 +55,23 @@ TimeSpan DrawnOut(const PressureStep& step, const std::vector<HeightSample>& sam
           std::clamp(end, seen.end, seen.end + most)};
 }
 
+/// The longest silence in a step, if it is most of it: when the height changed in it, nobody knows.
+std::optional<TimeSpan> SilenceOf(const PressureStep& step,
+                                  const std::vector<HeightSample>& samples) {
+  constexpr double kLeast = 15.0;  // s
+  constexpr double kMost = 120.0;  // s: in a longer one the robot does more than change the floor
+  TimeSpan longest{samples[step.first].stamp, samples[step.first].stamp};
+  for (std::size_t i = step.first; i < step.last; ++i) {
+    const TimeSpan silence{samples[i].stamp, samples[i + 1].stamp};
+    if (silence.Duration() > longest.Duration()) longest = silence;
+  }
+  const double whole = samples[step.last].stamp - samples[step.first].stamp;
+  if (longest.Duration() < std::max(kLeast, 0.5 * whole) || longest.Duration() > kMost) {
+    return std::nullopt;
+  }
+  return longest;
+}
+
 /// What the wheels make of a step; empty when they say that it cannot have been a change of floor.
 std::optional<Candidate> Explained(const PressureStep& step,
                                    const std::vector<HeightSample>& samples,
@@ -73,6 +90,12 @@ std::optional<Candidate> Explained(const PressureStep& step,
   // The heights certainly move from `narrowest.start` to `narrowest.end`, if that is a time at all.
   const TimeSpan narrowest{samples[step.first + 1].stamp, samples[step.last - 1].stamp};
   const TimeSpan stay = track.LongestStay(widest.start, widest.end, options.cab_radius);
+  // A rest in a silence may be a ride or none: scans or an accelerometer may have heard it.
+  if (const std::optional<TimeSpan> silence = SilenceOf(step, samples); silence && !is_cut) {
+    candidate.by_elevator = true;
+    candidate.span = *silence;
+    return candidate;
+  }
   const double stayed = std::min(stay.end, widest.end) - std::max(stay.start, widest.start);
   if (stay.Duration() >= options.least_stay_s &&
       stayed >= std::max(0.6 * narrowest.Duration(), std::min(2.0, 0.6 * widest.Duration()))) {
