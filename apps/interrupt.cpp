@@ -24,4 +24,11 @@ void ThrowIfInterrupted() {
   if (interrupted != 0) throw Interrupted("interrupted; nothing was written");
 }
 
+bool TakeInterrupt() {
+  if (interrupted == 0) return false;
+  interrupted = 0;
+  CatchInterrupts();
+  return true;
+}
+
 }  // namespace masked_mapper

@@ -18,4 +18,8 @@ void CatchInterrupts();
 /// Throws Interrupted when one came.
 void ThrowIfInterrupted();
 
+/// Whether one came; it counts no longer, and the next one is remembered again. For who listens to
+/// a robot until it is told to stop.
+bool TakeInterrupt();
+
 }  // namespace masked_mapper

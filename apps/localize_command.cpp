@@ -4,14 +4,18 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "live_input.hpp"
 #include "masked_mapper/export/localization_export.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/localization/localizer.hpp"
+#include "masked_mapper/log/live_log.hpp"
 #include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/log/recordings.hpp"
@@ -19,6 +23,7 @@
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "option_flags.hpp"
 #include "progress_bar.hpp"
@@ -32,6 +37,7 @@ struct LocalizeArguments {
   std::string map;
   std::string out;
   OptionFlags options;
+  std::string follow;  ///< a file that grows
   bool json = false;
   bool poses = false;
   bool force = false;
@@ -59,12 +65,11 @@ LocalizerOptions LocalizerOptionsOf(const Options& options) {
 
 class LocalizeRun {
  public:
-  LocalizeRun(const LocalizeArguments& arguments, const BuildingMap& map, Localizer& localizer,
-              ProgressBar& progress)
-      : arguments_(arguments), map_(map), localizer_(localizer), progress_(progress) {}
+  LocalizeRun(const BuildingMap& map, Localizer& localizer, ProgressBar& progress)
+      : map_(map), localizer_(localizer), progress_(progress) {}
 
   /// As `map` reads it: surveyed, its wheels mended, its scans straightened.
-  void Drive(LogSource& source, const MappingOptions& options) {
+  void Drive(LogSource& source, const MappingOptions& options, bool says_poses) {
     progress_.Stage("reading");
     const LogSurvey survey = SurveyLog(source, options);
     const MotionSource motion = SettleMotionSource(source.path(), options.motion, survey);
@@ -77,7 +82,7 @@ class LocalizeRun {
     while (const std::optional<Observation> observation = log->Next()) {
       if (!localizer_.Observe(*observation)) continue;
       progress_.Progress(log->Progress(), localizer_.result().scans.size());
-      if (arguments_.poses) {
+      if (says_poses) {
         std::cout << PoseLine(map_, localizer_.result().scans.back()) << std::endl;
       }
     }
@@ -92,12 +97,55 @@ class LocalizeRun {
     progress_.Warn(warnings_.back());
   }
 
-  const LocalizeArguments& arguments_;
   const BuildingMap& map_;
   Localizer& localizer_;
   ProgressBar& progress_;
   std::vector<std::string> warnings_;
 };
+
+/// Answers scan by scan, as the log comes. False: it is packed, or a bag, and can be read only when
+/// all of it is there.
+bool AnswerLive(LiveInput& input, const SavedMap& saved, const Options& options, bool says_poses,
+                ProgressBar& progress) {
+  Localizer localizer(saved.result, saved.origin.mask, LocalizerOptionsOf(options));
+  LiveLog log(options.mapping.log);
+  std::optional<bool> is_text;
+  const auto answer = [&] {
+    while (const std::optional<Observation> observation = log.Next()) {
+      if (!localizer.Observe(*observation) || !says_poses) continue;
+      std::cout << PoseLine(saved.result, localizer.result().scans.back()) << std::endl;
+    }
+  };
+  progress.Stage("listening");
+  input.Listen(
+      [&](std::string_view bytes) {
+        if (!is_text) is_text = BeginsAsText(bytes);
+        if (!*is_text) return;
+        log.Add(bytes);
+        answer();
+      },
+      progress);
+  if (!is_text.value_or(true)) return false;
+  log.Finish();
+  answer();
+  return true;
+}
+
+/// The log as it is when it is over; and, of one that comes live, whether its poses were said.
+struct LiveDrive {
+  std::unique_ptr<LiveInput> input;
+  bool said_poses = false;
+};
+
+LiveDrive Listen(const LocalizeArguments& arguments, const SavedMap& saved, const Options& options,
+                 ProgressBar& progress) {
+  LiveDrive live;
+  const bool is_pipe = arguments.logs.size() == 1 && arguments.logs.front() == "-";
+  if (arguments.follow.empty() && !(is_pipe && arguments.poses)) return live;
+  live.input = std::make_unique<LiveInput>(is_pipe ? "-" : arguments.follow);
+  live.said_poses = AnswerLive(*live.input, saved, options, arguments.poses, progress);
+  return live;
+}
 
 std::string Closing(const Localization& drive, const std::string& doubt, std::size_t changes) {
   std::size_t placed = 0;
@@ -132,21 +180,30 @@ int RunLocalize(const LocalizeArguments& arguments) {
   const ExistingFolder existing = HowToTreat(arguments);
   CheckOutputFolder(arguments.out, existing);
   const SavedMap saved = ReadMapFile(MapFileOf(arguments.map));
-  const std::vector<std::vector<std::string>> recordings = RecordingsOf(arguments.logs);
+  if (arguments.logs.empty() == arguments.follow.empty()) {
+    throw InputError("localize: expected LOG or --follow FILE, one of the two");
+  }
   CatchInterrupts();
   ProgressBar progress(arguments.quiet);
   for (const std::string& line : saved.left_aside) progress.Warn(arguments.map + ": " + line);
   Localizer localizer(saved.result, saved.origin.mask, LocalizerOptionsOf(options));
-  LocalizeRun run(arguments, saved.result, localizer, progress);
+  LocalizeRun run(saved.result, localizer, progress);
+  const LiveDrive live = Listen(arguments, saved, options, progress);
+  const bool says_poses = arguments.poses && !live.said_poses;
+  const std::vector<std::vector<std::string>> recordings =
+      live.input ? std::vector<std::vector<std::string>>{{live.input->kept()}}
+                 : RecordingsOf(arguments.logs);
   for (const std::vector<std::string>& files : recordings) {
     const bool is_one = files.size() == 1;
     const auto source = is_one ? std::make_unique<LogSource>(files.front(), options.mapping.log)
                                : std::make_unique<LogSource>(files, options.mapping.log);
-    run.Drive(*source, options.mapping);
+    run.Drive(*source, options.mapping, says_poses);
   }
   const std::vector<MapChange> changes = localizer.Changes();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  const LocalizationRun description{arguments.logs, arguments.map, taken.count(), run.warnings()};
+  const std::vector<std::string> logs =
+      arguments.follow.empty() ? arguments.logs : std::vector<std::string>{arguments.follow};
+  const LocalizationRun description{logs, arguments.map, taken.count(), run.warnings()};
   OutputFolder folder(arguments.out, existing);
   WriteLocalization(saved.result, localizer.result(), changes, description, folder.path());
   ThrowIfInterrupted();
@@ -173,6 +230,11 @@ constexpr const char* kFooter =
     "again.\n"
     "A log of another building is not found; that is an answer, and no error.\n"
     "\n"
+    "With --poses, `-` answers each scan as it comes, if the log is CARMEN text; so does "
+    "--follow.\n"
+    "When the log is over, it is driven through once more with all that it tells of its sensors:\n"
+    "DIR is the same as that of the whole log.\n"
+    "\n"
     "DIR holds trajectory.tum (in the map's frame, placed scans only, also those that were placed "
     "in\n"
     "hindsight), floors.csv (t,label as known at t; `?`: not sure), summary.json, and page.html "
@@ -184,11 +246,13 @@ constexpr const char* kFooter =
 void AddLocalizeCommand(CLI::App& program, Run& run) {
   auto arguments = std::make_shared<LocalizeArguments>();
   CLI::App* command = program.add_subcommand("localize", "Find a robot in a finished map");
+  command->add_option(
+      "LOG", arguments->logs,
+      "the robot's log, `-`: standard input; of several, one is driven after the other");
   command
-      ->add_option(
-          "LOG", arguments->logs,
-          "the robot's log, `-`: standard input; of several, one is driven after the other")
-      ->required();
+      ->add_option("--follow", arguments->follow,
+                   "a log in text that is still being written, until Ctrl-C")
+      ->type_name("FILE");
   command->add_option("--in", arguments->map, "what `map` wrote, or the building.mmap in it")
       ->required()
       ->type_name("OUT|MAP");
