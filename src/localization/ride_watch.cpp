@@ -82,11 +82,16 @@ std::optional<RideNews> RideWatch::News() {
   for (const FloorTransit& transit : Transits()) {
     // What the beginning of the last minutes cuts was told when it was whole; and one that was told
     // may look a little otherwise later.
-    const bool is_cut = std::isinf(transit.start);
-    const bool is_old = is_cut ? !std::isinf(transit.end) : transit.start < told_to_;
-    if (is_old || transit.end <= told_to_ + kSame) continue;
+    const bool is_cut = std::isinf(transit.start) && !std::isinf(transit.end);
+    if (is_cut || transit.end <= told_to_ + kSame) continue;
+    const bool goes_on = transit.start < told_to_;
+    if (goes_on && !transit.climb) continue;
     RideNews news{transit.climb, transit.climb_sigma, newest_ >= transit.end + kSettled};
-    if (news.is_over) told_to_ = transit.end;
+    if (goes_on) *news.climb_m -= told_climb_m_;
+    if (news.is_over) {
+      told_to_ = transit.end;
+      told_climb_m_ = transit.climb.value_or(0.0);
+    }
     return news;
   }
   return std::nullopt;

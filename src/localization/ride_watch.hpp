@@ -14,7 +14,8 @@ namespace masked_mapper {
 
 /// The robot is between floors, or was until just now.
 struct RideNews {
-  std::optional<double> climb_m;  ///< up, so far; nothing: nobody knows
+  /// Up, so far, since the last ride that was told as over: a ride may go on behind a landing.
+  std::optional<double> climb_m;  ///< nothing: nobody knows
   double sigma_m = 0.0;
   bool is_over = false;
 };
@@ -43,8 +44,9 @@ class RideWatch {
   std::deque<OdometryReading> odometry_;  ///< of the last minutes, as below
   std::deque<PressureReading> pressure_;
   std::deque<AccelerationReading> acceleration_;
-  double newest_ = 0.0;  ///< s
-  double looked_ = 0.0;  ///< s, when the last minutes were last looked at
+  double newest_ = 0.0;        ///< s
+  double looked_ = 0.0;        ///< s, when the last minutes were last looked at
+  double told_climb_m_ = 0.0;  ///< of the ride that was told last
   double told_to_ = -std::numeric_limits<double>::infinity();  ///< s: rides up to here are told
   std::optional<Pose2> T_odom_rest_;
   double moved_at_ = 0.0;  ///< s, since when the robot rests
