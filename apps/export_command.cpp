@@ -43,6 +43,8 @@ struct ExportArguments {
   bool keep_frame = false;
   std::vector<std::string> clouds;
   double voxel_m = 0.05;
+  RobotHeights robot;
+  double memory_mib = 1024.0;
   bool quiet = false;
 };
 
@@ -137,13 +139,15 @@ int ExportClouds(const ExportArguments& arguments) {
   request.format = arguments.format;
   request.file = arguments.file;
   request.logs = arguments.clouds;
-  request.options.voxel_m = arguments.voxel_m;
-  request.options.heights = arguments.heights;
+  request.voxel_m = arguments.voxel_m;
+  request.heights = arguments.heights;
+  request.robot = arguments.robot;
+  request.memory_mib = arguments.memory_mib;
   request.quiet = arguments.quiet;
   CheckSpaceRequest(request);
   const SavedMap map = ReadMap(arguments);
   if (!arguments.floor.empty()) {
-    request.options.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);
+    request.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);
   }
   return ExportSpace(map, request);
 }
@@ -213,13 +217,26 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->type_name("FILE");
   command
       ->add_option("--clouds", arguments->clouds,
-                   "of pcd, ply and las: all that the 3D lidar of this log saw, the one that was "
-                   "mapped; its bags in order")
+                   "of octomap, grid, pcd, ply and las: by all that the 3D lidar of this log saw, "
+                   "the one that was mapped; its bags in order")
       ->type_name("LOG...");
-  command->add_option("--voxel", arguments->voxel_m, "of --clouds: one point per voxel, m")
+  command->add_option("--voxel", arguments->voxel_m, "of --clouds: one point per so much, m")
       ->check(CLI::Range(0.005, 10.0))
       ->capture_default_str()
       ->type_name("METRES");
+  command
+      ->add_option("--robot-height", arguments->robot.high_m,
+                   "of a grid with --clouds: what hangs higher the robot passes below, m")
+      ->check(CLI::Range(0.2, 100.0))
+      ->capture_default_str()
+      ->type_name("METRES");
+  command
+      ->add_option("--memory", arguments->memory_mib,
+                   "of octomap and grid with --clouds: voxels at the most, MiB; the log is read "
+                   "again for floors that do not fit")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str()
+      ->type_name("MIB");
   command
       ->add_option("--radius", arguments->clearance.radius_m,
                    "of nav2 and rmf: of the robot for which there must be room, m")
@@ -251,6 +268,7 @@ constexpr const char* kFooter =
     "  masked_mapper export out --format nav2 -o for_the_robot\n"
     "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
     "  masked_mapper export out --format las --clouds drive.mcap -o building.las\n"
+    "  masked_mapper export out --format octomap --clouds drive.mcap -o space.bt\n"
     "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd";
 
 }  // namespace

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "export_space.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <optional>
-#include <utility>
 
 #include "aside_folder.hpp"
 #include "interrupt.hpp"
+#include "masked_mapper/export/space_export.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "progress_bar.hpp"
@@ -17,17 +19,101 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SpaceFormat SpaceFormatNamed(const std::string& name) {
+std::optional<SpaceFormat> PointFormat(const std::string& name) {
   if (name == "pcd") return SpaceFormat::kPcd;
   if (name == "ply") return SpaceFormat::kPly;
   if (name == "las") return SpaceFormat::kLas;
-  throw InputError("export: --clouds is for pcd, ply and las, not for `" + name + "`");
+  return std::nullopt;
+}
+
+/// All clouds of the logs, in their order.
+void ReadClouds(const SavedMap& map, const SpaceRequest& request, const std::string& stage,
+                ProgressBar& progress, const std::function<void(const LevelledCloud&)>& take) {
+  progress.Stage(stage);
+  CloudSource source(request.logs, map.origin.options.mapping.log);
+  while (const std::optional<LevelledCloud> cloud = source.Next()) {
+    take(*cloud);
+    progress.Progress(source.Progress(), 0);
+  }
+}
+
+void CheckTaken(const SpaceRequest& request, const CloudPoses& poses) {
+  if (poses.taken() > 0) return;
+  throw InputError(request.logs.front() + ": none of its clouds is of this map (" +
+                   std::to_string(poses.unknown()) + " have other stamps)");
+}
+
+/// The names of the files in `folder`, and what to say of them.
+struct Written {
+  std::vector<std::string> files;
+  std::string remark;
+};
+
+Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::path& folder,
+                    ProgressBar& progress) {
+  SpaceExportOptions options;
+  options.voxel_m = request.voxel_m;
+  options.max_range_m = map.origin.options.grid.max_usable_range_m;
+  options.floor = request.floor;
+  options.heights = request.heights;
+  SpaceExport space(map.result, options);
+  ReadClouds(map, request, "placing clouds", progress,
+             [&](const LevelledCloud& cloud) { space.Add(cloud); });
+  CheckTaken(request, space.poses());
+  progress.Stage("writing");
+  const std::string name = fs::path(request.file).filename();
+  space.Write(*PointFormat(request.format), folder / name);
+  return {{name}, std::to_string(space.poses().taken()) + " clouds"};
+}
+
+Written WriteOccupancy(const SavedMap& map, const SpaceRequest& request, const fs::path& folder,
+                       ProgressBar& progress) {
+  SpaceOccupancyOptions options;
+  options.votes.resolution_m = map.origin.options.grid.resolution_m;
+  options.max_range_m = map.origin.options.grid.max_usable_range_m;
+  options.floor = request.floor;
+  options.heights = request.heights;
+  options.memory_mib = request.memory_mib;
+  SpaceOccupancy space(map.result, options);
+  std::size_t clouds = 0;
+  std::size_t passes = 0;
+  do {
+    ++passes;
+    ReadClouds(map, request, passes > 1 ? "casting rays of other floors" : "casting rays", progress,
+               [&](const LevelledCloud& cloud) { space.Add(cloud); });
+    if (passes == 1) CheckTaken(request, space.poses());
+    if (passes == 1) clouds = space.poses().taken();
+  } while (space.Finish());
+  progress.Stage("writing");
+  const std::string remark = std::to_string(clouds) + " clouds, " +
+                             std::to_string(std::lround(space.peak_mib())) + " MiB of voxels" +
+                             (passes > 1 ? ", log read " + std::to_string(passes) + " times" : "");
+  fs::path name = fs::path(request.file).filename();
+  if (request.format == "octomap") {
+    space.WriteOctree(folder / name);
+    return {{name.string()}, remark};
+  }
+  if (name.extension() == ".pgm" || name.extension() == ".yaml") name.replace_extension();
+  space.WriteGrid(*request.floor, request.robot, folder / name);
+  return {{name.string() + ".pgm", name.string() + ".yaml"}, remark};
 }
 
 }  // namespace
 
 void CheckSpaceRequest(const SpaceRequest& request) {
-  SpaceFormatNamed(request.format);
+  const bool is_grid = request.format == "grid";
+  if (!PointFormat(request.format) && !is_grid && request.format != "octomap") {
+    throw InputError("export: --clouds is for octomap, pcd, ply, las and grid, not for `" +
+                     request.format + "`");
+  }
+  if (is_grid && request.heights != HeightBand{}) {
+    throw InputError(
+        "export: heights are for octomap, pcd, ply and las; what is in a robot's way "
+        "in a grid, --robot-height tells");
+  }
+  if (!(request.heights.low_m <= request.heights.high_m)) {
+    throw InputError("the lower height must not be above the upper");
+  }
   const fs::path file = fs::absolute(request.file);
   if (!file.has_filename()) throw InputError(request.file + ": not the name of a file");
   if (fs::exists(file) && !fs::is_regular_file(file)) {
@@ -35,29 +121,32 @@ void CheckSpaceRequest(const SpaceRequest& request) {
   }
 }
 
-int ExportSpace(const SavedMap& map, SpaceRequest request) {
-  request.options.max_range_m = map.origin.options.grid.max_usable_range_m;
-  CloudSource source(request.logs, map.origin.options.mapping.log);
-  SpaceExport space(map.result, request.options);
+int ExportSpace(const SavedMap& map, const SpaceRequest& wanted) {
+  SpaceRequest request = wanted;
+  const std::vector<Floor>& floors = map.result.graph.floors();
+  if (request.format == "grid" && !request.floor) {
+    if (floors.size() != 1) {
+      throw InputError("a grid is of one floor, and the map has " + std::to_string(floors.size()) +
+                       ": choose one with --floor");
+    }
+    request.floor = 0;
+  }
   CatchInterrupts();
   ProgressBar progress(request.quiet);
-  progress.Stage("placing clouds");
-  while (const std::optional<LevelledCloud> cloud = source.Next()) {
-    space.Add(*cloud);
-    progress.Progress(source.Progress(), 0);
-  }
-  progress.Finish();
-  if (space.clouds() == 0) {
-    throw InputError(request.logs.front() + ": none of its clouds is of this map (" +
-                     std::to_string(space.unknown()) + " have other stamps)");
-  }
   const fs::path file = fs::absolute(request.file);
   const AsideFolder aside(file);
-  const fs::path part = aside.path() / file.filename();
-  space.Write(SpaceFormatNamed(request.format), part);
-  fs::rename(part, file);
+  const bool is_points = PointFormat(request.format).has_value();
+  const Written written =
+      (is_points ? WritePoints : WriteOccupancy)(map, request, aside.path(), progress);
+  std::string names;
+  for (const std::string& name : written.files) {
+    fs::rename(aside.path() / name, file.parent_path() / name);
+    const fs::path shown = fs::path(request.file).parent_path() / name;
+    names += (names.empty() ? "" : ", ") + shown.string();
+  }
+  progress.Finish();
   if (!request.quiet) {
-    std::cout << request.format << ": " << request.file << " (" << space.clouds() << " clouds)\n";
+    std::cout << request.format << ": " << names << " (" << written.remark << ")\n";
   }
   return 0;
 }

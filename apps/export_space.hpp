@@ -2,10 +2,11 @@
 // masked_mapper export --clouds LOG: what a 3D lidar saw, read from the log once more.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "masked_mapper/export/space_export.hpp"
+#include "masked_mapper/export/space_occupancy.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 
 namespace masked_mapper {
@@ -14,14 +15,18 @@ struct SpaceRequest {
   std::string format;
   std::string file;
   std::vector<std::string> logs;  ///< bags of one recording, in its order
-  SpaceExportOptions options;     ///< the range apart, which is the map's
+  double voxel_m = 0.05;          ///< of points
+  std::optional<FloorId> floor;   ///< empty: all
+  HeightBand heights;             ///< in world
+  RobotHeights robot;             ///< of grids
+  double memory_mib = 1024.0;     ///< of octrees and grids
   bool quiet = false;
 };
 
 /// Throws InputError for what needs no map to be wrong.
 void CheckSpaceRequest(const SpaceRequest& request);
 
-/// Exit code.
-int ExportSpace(const SavedMap& map, SpaceRequest request);
+/// Exit code. Range and resolution are the map's.
+int ExportSpace(const SavedMap& map, const SpaceRequest& request);
 
 }  // namespace masked_mapper

@@ -81,6 +81,7 @@ LevelledCloud CloudScanner::Level(RosPointCloud cloud, double stamp, const Robot
   Move(T_level_robot, &points);
   LevelledCloud levelled;
   levelled.log_stamp = cloud.header.stamp > 0.0 ? cloud.header.stamp : stamp;
+  if (ground_.ceiling_m) levelled.ceiling_m = *ground_.ceiling_m - ground_.floor_m;
   levelled.points = std::move(points);
   levelled.lidar = T_level_robot * lidar;
   return levelled;

@@ -184,5 +184,45 @@ TEST(BuildOctree, BuildingBeyondTheKeysIsRefused) {
   }
 }
 
+// What a search in the tree finds is what the states say, voxel by voxel.
+TEST(Octree, OfStatesInSpaceIsWhatTheyAre) {
+  std::mt19937 random(3);
+  std::vector<SpaceBlock> blocks;
+  for (const VoxelIndex& at : {VoxelIndex{-1, 0, 0}, VoxelIndex{0, 0, 0}, VoxelIndex{3, -2, 1}}) {
+    blocks.emplace_back();
+    blocks.back().at = at;
+    // Cubes of one state, which the tree merges, and rubbish.
+    for (std::size_t i = 0; i < kSpaceBlockVoxels; ++i) {
+      blocks.back().cells[i] = i < 2048 ? Cell::kFree : static_cast<Cell>(random() % 3);
+    }
+  }
+  blocks[1].cells.fill(Cell::kOccupied);
+  const SpaceStates states(0.05, blocks);
+  const HeightBand heights{-0.1, 1.0};
+  const auto tree = BuildSpaceOctree({&states}, heights);
+  for (int z = -2; z < 34; ++z) {
+    for (int y = -34; y < 18; ++y) {
+      for (int x = -18; x < 66; ++x) {
+        const double height = (z + 0.5) * 0.05;
+        const Cell expected = height > 1.0 ? Cell::kUnknown : states.At({x, y, z});
+        const octomap::OcTreeNode* node = tree->search((x + 0.5) * 0.05, (y + 0.5) * 0.05, height);
+        const Cell found = node == nullptr               ? Cell::kUnknown
+                           : tree->isNodeOccupied(*node) ? Cell::kOccupied
+                                                         : Cell::kFree;
+        ASSERT_EQ(found, expected) << x << " " << y << " " << z;
+      }
+    }
+  }
+  EXPECT_LT(tree->size(), 3U * kSpaceBlockVoxels);
+}
+
+TEST(Octree, OfStatesBeyondItsReachIsRefused) {
+  std::vector<SpaceBlock> blocks(1);
+  blocks[0].at = {2048, 0, 0};
+  blocks[0].cells.fill(Cell::kFree);
+  const SpaceStates states(0.05, blocks);
+  EXPECT_THROW(BuildSpaceOctree({&states}), InputError);
+}
+
 }  // namespace
 }  // namespace masked_mapper

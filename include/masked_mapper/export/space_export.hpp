@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <unordered_map>
 
+#include "masked_mapper/export/cloud_poses.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/octree.hpp"
@@ -16,10 +16,9 @@
 namespace masked_mapper {
 
 struct SpaceExportOptions {
-  double voxel_m = 0.05;         ///< of each voxel one point, the mean of what was seen in it
-  double max_range_m = 30.0;     ///< farther returns are left out
-  double distance_m = 0.15;      ///< travel from one cloud that is taken to the next
-  double angle_deg = 10.0;       ///< or turn, whichever comes first
+  double voxel_m = 0.05;      ///< of each voxel one point, the mean of what was seen in it
+  double max_range_m = 30.0;  ///< farther returns are left out
+  CloudSpacing spacing;
   std::uint32_t least_hits = 2;  ///< a voxel with fewer is a stray
   std::optional<FloorId> floor;  ///< empty: all
   HeightBand heights;            ///< in world; what lies outside is left out
@@ -36,8 +35,7 @@ class SpaceExport {
   /// taken between floors, is left out.
   void Add(const LevelledCloud& cloud);
 
-  std::size_t clouds() const { return clouds_; }    ///< taken
-  std::size_t unknown() const { return unknown_; }  ///< of stamps that the map does not have
+  const CloudPoses& poses() const { return poses_; }
   std::size_t voxels() const { return voxels_.size(); }
   /// Throws std::runtime_error when the file cannot be written.
   void Write(SpaceFormat format, const std::filesystem::path& path) const;
@@ -45,11 +43,8 @@ class SpaceExport {
  private:
   const BuildingMap& map_;
   SpaceExportOptions options_;
-  std::unordered_map<std::int64_t, std::size_t> poses_;  ///< in the trajectory, by microseconds
-  std::optional<std::size_t> last_;                      ///< pose of the cloud taken last
+  CloudPoses poses_;
   VoxelCloud voxels_;
-  std::size_t clouds_ = 0;
-  std::size_t unknown_ = 0;
 };
 
 }  // namespace masked_mapper

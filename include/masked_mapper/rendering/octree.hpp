@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/rendering/space_states.hpp"
 
 namespace octomap {
 class OcTree;
@@ -48,5 +49,10 @@ struct HeightBand {
 std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
                                              const OctreeOptions& options,
                                              const HeightBand& heights = {});
+
+/// The same of what 3D lidars saw: each voxel as it is. Where floors overlap, an occupied voxel of
+/// one outvotes a free one of another. All have one resolution. Throws as above.
+std::shared_ptr<octomap::OcTree> BuildSpaceOctree(const std::vector<const SpaceStates*>& floors,
+                                                  const HeightBand& heights = {});
 
 }  // namespace masked_mapper

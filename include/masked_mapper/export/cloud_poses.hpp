@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where in a map the clouds of its log stand, and which of them are worth taking.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+
+#include "masked_mapper/map/building_map.hpp"
+
+namespace masked_mapper {
+
+/// Of clouds taken while the robot hardly moves one is enough.
+struct CloudSpacing {
+  double distance_m = 0.15;  ///< travel from one cloud that is taken to the next
+  double angle_deg = 10.0;   ///< or turn, whichever comes first
+};
+
+class CloudPoses {
+ public:
+  /// `floor`: the only one that is wanted; empty: all. The map must outlive it.
+  CloudPoses(const BuildingMap& map, const CloudSpacing& spacing, std::optional<FloorId> floor);
+
+  /// For clouds in the log's order, by LevelledCloud::log_stamp. Null: the map has no such scan, it
+  /// was taken between floors, or too near the last.
+  const TrajectoryPose* Take(double log_stamp);
+  /// World from the level frame of a cloud; z from the elevation of the pose's floor.
+  Eigen::Isometry3d T_world_level(const TrajectoryPose& pose) const;
+
+  std::size_t taken() const { return taken_; }
+  std::size_t unknown() const { return unknown_; }  ///< of stamps that the map does not have
+
+ private:
+  const BuildingMap& map_;
+  CloudSpacing spacing_;
+  std::optional<FloorId> floor_;
+  std::unordered_map<std::int64_t, std::size_t> poses_;  ///< in the trajectory, by microseconds
+  const TrajectoryPose* last_ = nullptr;
+  std::size_t taken_ = 0;
+  std::size_t unknown_ = 0;
+};
+
+}  // namespace masked_mapper

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface_patch.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace masked_mapper {
+
+std::optional<Eigen::Vector3f> SurfacePatch::Normal(float thickness_m) {
+  constexpr std::uint32_t kFew = 6;
+  // A quarter more of hits changes little.
+  if (count_ >= kFew && 4 * count_ >= 5 * counted_) {
+    counted_ = count_;
+    const auto n = static_cast<float>(count_);
+    const Eigen::Vector3f mean = sum_ / n;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+    solver.computeDirect(Eigen::Matrix3f(squares_ / n - mean * mean.transpose()));
+    const Eigen::Vector3f& spread = solver.eigenvalues();  // rising
+    const float thin = thickness_m * thickness_m;
+    const bool is_plane = spread(0) < thin && spread(1) > thin && spread(1) > 4.0F * spread(0);
+    normal_ = is_plane ? Eigen::Vector3f(solver.eigenvectors().col(0)) : Eigen::Vector3f::Zero();
+  }
+  if (normal_.isZero()) return std::nullopt;
+  return normal_;
+}
+
+}  // namespace masked_mapper
