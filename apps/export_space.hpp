@@ -27,6 +27,6 @@ struct SpaceRequest {
 void CheckSpaceRequest(const SpaceRequest& request);
 
 /// Exit code. Range and resolution are the map's.
-int ExportSpace(const SavedMap& map, const SpaceRequest& request);
+int ExportSpace(const SavedMap& map, const SpaceRequest& wanted);
 
 }  // namespace masked_mapper

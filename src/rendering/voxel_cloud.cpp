@@ -18,9 +18,9 @@ void VoxelCloud::Add(const SpacePoint& point) {
   std::array<std::int32_t, 3> cell{};
   for (int axis = 0; axis < 3; ++axis) {
     cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(std::floor(in_voxels(axis)));
-    const auto shifted = static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] +
-                                                    static_cast<std::int32_t>(kMostVoxels));
-    key = key << kBits | shifted;
+    const std::int64_t shifted =
+        std::int64_t{cell[static_cast<std::size_t>(axis)]} + static_cast<std::int64_t>(kMostVoxels);
+    key = key << kBits | static_cast<std::uint64_t>(shifted);
   }
   if (index_.size() <= point.label) index_.resize(point.label + 1U);
   const auto [known, is_new] =
