@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 
+#include "little_endian.hpp"
 #include "output_file.hpp"
 
 namespace masked_mapper {
@@ -19,15 +19,6 @@ constexpr double kScale = 0.001;           // m
 constexpr double kGpsEpoch = 315964800.0;  // s, of 1970
 constexpr double kLeapSeconds = 18.0;      // since 2017
 constexpr double kAdjusted = 1e9;          // s, what LAS takes off GPS time
-
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
-
-template <typename T>
-void Append(const T& value, std::string* bytes) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes->append(raw, sizeof(T));
-}
 
 void AppendText(const std::string& text, std::size_t size, std::string* bytes) {
   std::string field = text;

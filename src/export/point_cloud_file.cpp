@@ -5,10 +5,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <string>
 
+#include "little_endian.hpp"
 #include "output_file.hpp"
 
 namespace masked_mapper {
@@ -30,14 +30,38 @@ Colour OnRamp(double fraction) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
-// Both formats are little-endian here, and so is every machine that this is built for.
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+std::string PcdHeader(std::size_t points, bool has_intensity) {
+  const std::string count = std::to_string(points);
+  const auto with = [has_intensity](const char* fields, const char* intensity) {
+    return std::string(fields) + (has_intensity ? intensity : "") + "\n";
+  };
+  return "# .PCD v0.7 - Point Cloud Data file format\n"
+         "VERSION 0.7\n" +
+         with("FIELDS x y z rgba label", " intensity") + with("SIZE 4 4 4 4 4", " 4") +
+         with("TYPE F F F U U", " F") + with("COUNT 1 1 1 1 1", " 1") + "WIDTH " + count +
+         "\n"
+         "HEIGHT 1\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\n"
+         "POINTS " +
+         count +
+         "\n"
+         "DATA binary\n";
+}
 
-template <typename T>
-void Append(const T& value, std::string* bytes) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes->append(raw, sizeof(T));
+std::string PlyHeader(std::size_t points, bool has_intensity) {
+  return "ply\n"
+         "format binary_little_endian 1.0\n"
+         "element vertex " +
+         std::to_string(points) +
+         "\n"
+         "property float x\n"
+         "property float y\n"
+         "property float z\n"
+         "property uchar red\n"
+         "property uchar green\n"
+         "property uchar blue\n"
+         "property uint label\n" +
+         (has_intensity ? "property float intensity\n" : "") + "end_header\n";
 }
 
 // Of a point first its place, then what the format has for a colour, then its label.
@@ -104,45 +128,14 @@ ColouredCloud Coloured(const pcl::PointCloud<pcl::PointXYZL>& cloud,
 }
 
 void WritePcd(const ColouredCloud& cloud, const std::filesystem::path& path) {
-  const std::string count = std::to_string(cloud.size());
-  const std::string header =
-      "# .PCD v0.7 - Point Cloud Data file format\n"
-      "VERSION 0.7\n"
-      "FIELDS x y z rgba label\n"
-      "SIZE 4 4 4 4 4\n"
-      "TYPE F F F U U\n"
-      "COUNT 1 1 1 1 1\n"
-      "WIDTH " +
-      count +
-      "\n"
-      "HEIGHT 1\n"
-      "VIEWPOINT 0 0 0 1 0 0 0\n"
-      "POINTS " +
-      count +
-      "\n"
-      "DATA binary\n";
   WriteCloud(
-      header, cloud,
+      PcdHeader(cloud.size(), false), cloud,
       [](const pcl::PointXYZRGBL& point, std::string* bytes) { Append(point.rgba, bytes); }, path);
 }
 
 void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
-  const std::string header =
-      "ply\n"
-      "format binary_little_endian 1.0\n"
-      "element vertex " +
-      std::to_string(cloud.size()) +
-      "\n"
-      "property float x\n"
-      "property float y\n"
-      "property float z\n"
-      "property uchar red\n"
-      "property uchar green\n"
-      "property uchar blue\n"
-      "property uint label\n"
-      "end_header\n";
   WriteCloud(
-      header, cloud,
+      PlyHeader(cloud.size(), false), cloud,
       [](const pcl::PointXYZRGBL& point, std::string* bytes) {
         Append(point.r, bytes);
         Append(point.g, bytes);
@@ -153,25 +146,8 @@ void WritePly(const ColouredCloud& cloud, const std::filesystem::path& path) {
 
 void WriteSpacePcd(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
                    const std::filesystem::path& path) {
-  const std::string count = std::to_string(points.size());
-  const std::string header =
-      "# .PCD v0.7 - Point Cloud Data file format\n"
-      "VERSION 0.7\n"
-      "FIELDS x y z rgba label intensity\n"
-      "SIZE 4 4 4 4 4 4\n"
-      "TYPE F F F U U F\n"
-      "COUNT 1 1 1 1 1 1\n"
-      "WIDTH " +
-      count +
-      "\n"
-      "HEIGHT 1\n"
-      "VIEWPOINT 0 0 0 1 0 0 0\n"
-      "POINTS " +
-      count +
-      "\n"
-      "DATA binary\n";
   WriteSpace(
-      header, points, colours,
+      PcdHeader(points.size(), true), points, colours,
       [](const Colour& colour, std::string* bytes) {
         Append(std::uint32_t{0xFF000000U} | static_cast<std::uint32_t>(colour.red) << 16U |
                    static_cast<std::uint32_t>(colour.green) << 8U | colour.blue,
@@ -182,23 +158,8 @@ void WriteSpacePcd(const std::vector<SpacePoint>& points, const std::vector<Colo
 
 void WriteSpacePly(const std::vector<SpacePoint>& points, const std::vector<Colour>& colours,
                    const std::filesystem::path& path) {
-  const std::string header =
-      "ply\n"
-      "format binary_little_endian 1.0\n"
-      "element vertex " +
-      std::to_string(points.size()) +
-      "\n"
-      "property float x\n"
-      "property float y\n"
-      "property float z\n"
-      "property uchar red\n"
-      "property uchar green\n"
-      "property uchar blue\n"
-      "property uint label\n"
-      "property float intensity\n"
-      "end_header\n";
   WriteSpace(
-      header, points, colours,
+      PlyHeader(points.size(), true), points, colours,
       [](const Colour& colour, std::string* bytes) {
         Append(colour.red, bytes);
         Append(colour.green, bytes);
