@@ -38,7 +38,8 @@ constexpr std::size_t kLeastFree = 6;
 std::vector<Patch> HitsOf(const LaserScan& scan, const Pose2& T_odom_robot) {
   std::unordered_set<std::int64_t> cells;
   std::map<std::int64_t, Patch> patches;
-  for (const pcl::PointXY& point : *PointsInRobot(scan)) {
+  const ScanPoints::ConstPtr points_in_robot = PointsInRobot(scan);
+  for (const pcl::PointXY& point : *points_in_robot) {
     if (std::hypot(point.x, point.y) > kFarthest) continue;
     const Eigen::Vector2d in_odom = T_odom_robot * Eigen::Vector2d(point.x, point.y);
     if (!cells.insert(Key(in_odom, kCell)).second) continue;

@@ -95,7 +95,8 @@ struct SweepingScanner {
 inline double MedianThickness(const SweepingScanner& scanner, const std::vector<LaserScan>& scans) {
   std::vector<double> off;
   for (const LaserScan& scan : scans) {
-    for (const pcl::PointXY& point : *PointsInRobot(scan)) {
+    const ScanPoints::ConstPtr points_in_robot = PointsInRobot(scan);
+    for (const pcl::PointXY& point : *points_in_robot) {
       off.push_back(scanner.room.Distance(scanner.T_room_robot(scan.stamp) *
                                           Eigen::Vector2d(point.x, point.y)));
     }
