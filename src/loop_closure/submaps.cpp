@@ -12,12 +12,10 @@
 namespace masked_mapper {
 
 LocalMap Submaps::Build(NodeId node) const {
-  std::vector<LocalMap::PosedPoints> scans;
-  for (const ScanNearNode& near : ScansAround(building_, node, Surroundings())) {
-    scans.push_back({PointsInRobot(*near.scan), near.T_node_robot});
-  }
   LocalMap map(options_.map, Eigen::Vector2d::Zero());
-  map.Add(scans);
+  for (const ScanNearNode& near : ScansAround(building_, node, Surroundings())) {
+    map.Add(*PointsInRobot(*near.scan), near.T_node_robot);
+  }
   return map;
 }
 

@@ -70,7 +70,7 @@ class Surveyor {
   }
 
   /// What is to be mended of the wheels, each with its finding.
-  WheelMending Wheels() const {
+  WheelMending Wheels() {
     if (!asks_wheels_ || !survey_.odometry_moves) return {};
     if (turns_left_out_) {
       // Of the turns no more is to be asked: where the robot turns on its place, such wheels rest.
@@ -82,9 +82,11 @@ class Surveyor {
     }
     // With another clock wheels seem to stand still where they do not.
     const std::vector<FalseRest> rests = standstill_.Find();
-    WheelReport report = wheels_.Find({});
-    if (!report.fault.scan_clock_s) report = wheels_.Find(SpansOf(rests));
-    return MendingOf(report.fault, rests, log_);
+    if (!rests.empty()) {
+      const WheelReport of_all = wheels_.Find({});
+      if (of_all.fault.scan_clock_s) return MendingOf(of_all.fault, rests, log_);
+    }
+    return MendingOf(WhereWheelsTurn().fault, rests, log_);
   }
 
   /// Behind the last observation.
@@ -96,8 +98,8 @@ class Surveyor {
     survey_.floor_source = floors_.source();
     survey_.warnings = floors_.warnings();
     if (survey_.odometry_moves && !turns_left_out_) {
-      const WheelReport report = wheels_.Find(SpansOf(standstill_.Find()));
-      const std::string fault = WarningOf(FindMountFault(report.stretches), T_robot_laser_);
+      const std::string fault =
+          WarningOf(FindMountFault(WhereWheelsTurn().stretches), T_robot_laser_);
       if (!fault.empty()) survey_.warnings.push_back(fault);
     } else if (survey_.has_odometry && !survey_.odometry_moves) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
@@ -110,6 +112,12 @@ class Surveyor {
   }
 
  private:
+  /// Of the wheels without the rests that are none; behind the last observation.
+  const WheelReport& WhereWheelsTurn() {
+    if (!report_) report_ = wheels_.Find(SpansOf(standstill_.Find()));
+    return *report_;
+  }
+
   void ObserveScan(const LaserScan& scan) {
     if (survey_.scans++ == 0) {
       log_.start = scan.stamp;
@@ -157,6 +165,7 @@ class Surveyor {
   FloorTracker floors_;
   StandstillCheck standstill_;
   WheelCheck wheels_;
+  std::optional<WheelReport> report_;  ///< once it was asked for
   SweepCheck sweep_;
   UnbrokenWay unbroken_;
   bool turns_left_out_;

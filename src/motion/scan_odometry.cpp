@@ -16,15 +16,6 @@ Eigen::Matrix3d FlooredInverse(Eigen::Matrix3d covariance) {
   return covariance.inverse();
 }
 
-ScanPoints::ConstPtr PointsWithin(const ScanPoints::ConstPtr& points_in_robot, double reach_m) {
-  if (std::isinf(reach_m)) return points_in_robot;
-  ScanPoints::Ptr near(new ScanPoints);
-  for (const pcl::PointXY& point : *points_in_robot) {
-    if (std::hypot(point.x, point.y) <= reach_m) near->push_back(point);
-  }
-  return near;
-}
-
 constexpr double kMapMargin = 1.0;  // m; more than a robot moves from one keyframe to the next
 
 /// Travel after a transit through which a door may still open.
@@ -81,7 +72,7 @@ void ScanOdometry::LeaveTransit() {
   suspected_m_ = kSuspected;
 }
 
-Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
+Alignment ScanOdometry::AlignFromSeveralGuesses(const FacedPoints& points, const Pose2& T_map_guess,
                                                 const Eigen::Matrix3d& prior_information) const {
   Alignment best = maps_.current->Align(points, T_map_guess, prior_information);
   // The last corrected step done once more, where the wheels say something else.
@@ -104,7 +95,7 @@ Alignment ScanOdometry::AlignFromSeveralGuesses(const ScanPoints& points, const 
 
 // In a blank corridor the one thing that tells of the way along it may be a person who walks ahead
 // at the robot's pace. Wheels are overruled by a scan as a whole, not by a few points of it.
-Alignment ScanOdometry::AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
+Alignment ScanOdometry::AlignUnlessOverruled(const FacedPoints& points, const Pose2& T_map_guess,
                                              const Eigen::Matrix3d& prior_information) const {
   Alignment aligned = AlignFromSeveralGuesses(points, T_map_guess, prior_information);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> known(
@@ -129,7 +120,7 @@ Alignment ScanOdometry::AlignUnlessOverruled(const ScanPoints& points, const Pos
 // not, Fuse it with the wheels, and KeepMap.
 UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
                                      bool must_match) {
-  const View view = ViewOf(scan);
+  View view(scan, reach_m_);
   if (!maps_.current) {
     Begin(view, T_last_now.mean);
     return T_last_now;
@@ -149,7 +140,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
     ++rest_scans_;
   }
   const Prediction predicted = PriorOf(is_at_rest);
-  const Alignment aligned = AlignUnlessOverruled(*view.points, path_.T_map_robot, predicted.prior);
+  const Alignment aligned = AlignUnlessOverruled(view.Points(), path_.T_map_robot, predicted.prior);
   inlier_share_ = aligned.inlier_share;
   const bool is_believed = Believe(aligned, predicted, must_match);
   const UncertainPose2 step =
@@ -166,16 +157,32 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   return step;
 }
 
-ScanOdometry::View ScanOdometry::ViewOf(const LaserScan& scan) const {
-  const ScanPoints::ConstPtr all_points = PointsInRobot(scan);
-  return {PointsWithin(all_points, reach_m_), PointsWithin(all_points, reach_m_ + kMapMargin),
-          all_points};
+const FacedPoints& ScanOdometry::View::MapPoints() {
+  return Within(reach_m_ + kMapMargin, &map_points_);
 }
 
-void ScanOdometry::Begin(const View& view, const Pose2& T_last_now) {
+const FacedPoints& ScanOdometry::View::AllPoints() {
+  if (!all_points_) all_points_.emplace(*PointsInRobot(scan_));
+  return *all_points_;
+}
+
+const FacedPoints& ScanOdometry::View::Within(double reach_m, std::optional<FacedPoints>* points) {
+  if (std::isinf(reach_m)) return AllPoints();
+  if (!*points) {
+    const ScanPoints::ConstPtr all = PointsInRobot(scan_);
+    ScanPoints near;
+    for (const pcl::PointXY& point : *all) {
+      if (std::hypot(point.x, point.y) <= reach_m) near.push_back(point);
+    }
+    points->emplace(near);
+  }
+  return **points;
+}
+
+void ScanOdometry::Begin(View& view, const Pose2& T_last_now) {
   path_.T_map_robot = path_.T_map_robot * T_last_now;
   path_.T_map_matched = path_.T_map_robot;
-  if (!view.map_points->empty()) AddKeyframe(*view.map_points);
+  if (!view.MapPoints().empty()) AddKeyframe(view.MapPoints());
 }
 
 /// Whether the robot is where it was matched last. A wheel that says so is believed; a guess
@@ -236,8 +243,8 @@ bool ScanOdometry::Believe(const Alignment& aligned, const Prediction& predicted
 }
 
 // The scan does not even fit where the wheels put it.
-bool ScanOdometry::IsAnotherScene(const View& view) const {
-  return suspected_m_ > 0.0 && maps_.current->Agreement(*view.points, path_.T_map_robot,
+bool ScanOdometry::IsAnotherScene(View& view) const {
+  return suspected_m_ > 0.0 && maps_.current->Agreement(view.Points(), path_.T_map_robot,
                                                         kSceneSigma) < options_.min_inlier_share;
 }
 
@@ -270,34 +277,34 @@ UncertainPose2 ScanOdometry::GoOnByWheels(const Pose2& by_wheels, const Predicti
 
 // Nothing agrees any more (a door opened on another place, the log jumped): begin again here, and
 // of what is seen now all is one scene.
-void ScanOdometry::BeginAnew(const View& view) {
+void ScanOdometry::BeginAnew(View& view) {
   reach_m_ = std::numeric_limits<double>::infinity();
   maps_.current.reset();
   maps_.next.reset();
   path_.heading_variance = 0.0;
   lost_ = 0;
-  if (!view.all_points->empty()) AddKeyframe(*view.all_points);
+  if (!view.AllPoints().empty()) AddKeyframe(view.AllPoints());
 }
 
-void ScanOdometry::KeepMap(const View& view) {
+void ScanOdometry::KeepMap(View& view) {
   const std::optional<Pose2>& T_map_keyframe = maps_.T_map_keyframe;
   if (!T_map_keyframe ||
       Distance(*T_map_keyframe, path_.T_map_robot) >= options_.keyframe_distance_m ||
       Turn(*T_map_keyframe, path_.T_map_robot) >= DegToRad(options_.keyframe_angle_deg)) {
-    AddKeyframe(*view.map_points);
+    AddKeyframe(view.MapPoints());
   } else if (rest_scans_ > 0) {
     AddToYoungMap(view);
   }
 }
 
 // A young map is as noisy as its few scans, and all that follows is held against it.
-void ScanOdometry::AddToYoungMap(const View& view) {
+void ScanOdometry::AddToYoungMap(View& view) {
   if (maps_.current->scans() < static_cast<std::size_t>(options_.rest_scans)) {
-    maps_.current->Add(*view.map_points, path_.T_map_robot);
+    maps_.current->Add(view.MapPoints(), path_.T_map_robot);
   }
 }
 
-void ScanOdometry::AddKeyframe(const ScanPoints& points) {
+void ScanOdometry::AddKeyframe(const FacedPoints& points) {
   const auto begin_next = [&] {
     maps_.next.emplace(options_.map, path_.T_map_robot.Translation());
     maps_.next->Add(points, path_.T_map_robot);

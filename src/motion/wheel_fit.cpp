@@ -8,6 +8,7 @@
 
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "turn_fit.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -19,17 +20,14 @@ constexpr double kMostAhead = 8.0;   // s, of the clocks in question
 constexpr double kClockStep = 0.02;  // s
 // Less is what drivers and buses take, and what matching forgives: 0.2 s are 9 degrees where a
 // robot turns at 45 degrees a second.
-constexpr double kLeastAhead = 0.2;     // s
-constexpr double kApart = 1.0;          // s between clocks that are not the same
-constexpr double kTurnSigma = 2.0;      // deg by which honest wheels and scans differ in a stretch
-constexpr double kMostResidual = 15.0;  // deg; a greater one says no more than this
-constexpr double kLongestGap = 2.0;     // s without wheels, across which nothing is read
-constexpr double kLeastTurning = 2.5;   // rad of turning by scans below which nothing is said
-constexpr std::size_t kFewest = 12;     // stretches, the same
-constexpr double kTurns = 4.0;          // deg of a stretch by scans that make it a turn
-constexpr double kStraight = 8.0;       // deg up to which a stretch tells of the way
-constexpr double kWay = 0.2;            // m of a stretch that tells of the way
-constexpr double kSureOfWay = 0.1;      // of the way, sigma
+constexpr double kLeastAhead = 0.2;    // s
+constexpr double kApart = 1.0;         // s between clocks that are not the same
+constexpr double kLongestGap = 2.0;    // s without wheels, across which nothing is read
+constexpr double kLeastTurning = 2.5;  // rad of turning by scans below which nothing is said
+constexpr std::size_t kFewest = 12;    // stretches, the same
+constexpr double kStraight = 8.0;      // deg up to which a stretch tells of the way
+constexpr double kWay = 0.2;           // m of a stretch that tells of the way
+constexpr double kSureOfWay = 0.1;     // of the way, sigma
 // Smaller faults are part of the noise that wheels are given. In turns real wheels also lag behind
 // the scans, and seem by up to a fifth to tell of too much or too little.
 constexpr double kLeastFault = 0.1;
@@ -49,20 +47,43 @@ class Wheels {
     const auto after =
         std::lower_bound(poses_.begin(), poses_.end(), stamp,
                          [](const WheelPose& pose, double value) { return pose.stamp < value; });
-    if (after == poses_.end()) return std::nullopt;
-    if (after->stamp == stamp) return *after;
-    if (after == poses_.begin()) return std::nullopt;
-    const WheelPose& before = *(after - 1);
-    const double between = after->stamp - before.stamp;
-    if (between > kLongestGap) return std::nullopt;
-    const double fraction = (stamp - before.stamp) / between;
-    return WheelPose{
-        stamp,
-        before.position_in_odom + fraction * (after->position_in_odom - before.position_in_odom),
-        before.heading_rad + fraction * (after->heading_rad - before.heading_rad)};
+    return At(stamp, static_cast<std::size_t>(after - poses_.begin()));
+  }
+
+  /// The same of the heading alone, looked for from `near` on, which becomes the pose behind it: it
+  /// is a few poses away from what it was for a stamp nearby.
+  std::optional<double> HeadingAt(double stamp, std::size_t* near) const {
+    while (*near > 0 && poses_[*near - 1].stamp >= stamp) --*near;
+    while (*near < poses_.size() && poses_[*near].stamp < stamp) ++*near;
+    const std::optional<double> fraction = FractionAt(stamp, *near);
+    if (!fraction) return std::nullopt;
+    if (*fraction == 1.0) return poses_[*near].heading_rad;
+    const double before_rad = poses_[*near - 1].heading_rad;
+    return before_rad + *fraction * (poses_[*near].heading_rad - before_rad);
   }
 
  private:
+  /// Of the way from the pose before to the one behind a stamp; 1: at that one.
+  std::optional<double> FractionAt(double stamp, std::size_t after) const {
+    if (after == poses_.size()) return std::nullopt;
+    if (poses_[after].stamp == stamp) return 1.0;
+    if (after == 0) return std::nullopt;
+    const double between = poses_[after].stamp - poses_[after - 1].stamp;
+    if (between > kLongestGap) return std::nullopt;
+    return (stamp - poses_[after - 1].stamp) / between;
+  }
+
+  std::optional<WheelPose> At(double stamp, std::size_t after) const {
+    const std::optional<double> fraction = FractionAt(stamp, after);
+    if (!fraction) return std::nullopt;
+    if (*fraction == 1.0) return poses_[after];
+    const WheelPose& a = poses_[after - 1];
+    const WheelPose& b = poses_[after];
+    return WheelPose{stamp,
+                     a.position_in_odom + *fraction * (b.position_in_odom - a.position_in_odom),
+                     a.heading_rad + *fraction * (b.heading_rad - a.heading_rad)};
+  }
+
   const std::vector<WheelPose>& poses_;
 };
 
@@ -83,82 +104,57 @@ std::vector<StretchPair> Paired(const std::vector<Stretch>& stretches, const Whe
   return pairs;
 }
 
-double Bounded(double residual) {
-  const double most = DegToRad(kMostResidual);
-  return std::min(residual * residual, most * most);
+std::vector<TurnPair> TurnsOf(const std::vector<StretchPair>& pairs) {
+  std::vector<TurnPair> turns;
+  turns.reserve(pairs.size());
+  for (const StretchPair& pair : pairs) {
+    turns.push_back({pair.by_wheels.theta, pair.by_scans.theta});
+  }
+  return turns;
 }
 
-/// Turns by scans as a factor times those by wheels.
-struct TurnFit {
-  double factor = 1.0;
-  double left = 0.0;     // rad^2, mean bounded square of what the fit leaves
-  double without = 0.0;  // rad^2, the same if wheels told of no turn at all
-  double as_told = 0.0;  // rad^2, the same with a factor of 1
+/// The turns of all stretches by one clock after the other.
+class TurnsByClock {
+ public:
+  TurnsByClock(const std::vector<Stretch>& stretches, const Wheels& wheels)
+      : stretches_(stretches), wheels_(wheels), near_(stretches.size(), {0, 0}) {}
+
+  const std::vector<TurnPair>& At(double ahead_s) {
+    turns_.clear();
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+      const Stretch& stretch = stretches_[i];
+      const std::optional<double> a =
+          wheels_.HeadingAt(stretch.span.start - ahead_s, &near_[i].first);
+      const std::optional<double> b =
+          wheels_.HeadingAt(stretch.span.end - ahead_s, &near_[i].second);
+      if (a && b) turns_.push_back({*b - *a, stretch.by_scans.theta});
+    }
+    return turns_;
+  }
+
+ private:
+  const std::vector<Stretch>& stretches_;
+  const Wheels& wheels_;
+  std::vector<std::pair<std::size_t, std::size_t>> near_;  ///< poses of the wheels, of each stretch
+  std::vector<TurnPair> turns_;
 };
-
-/// Sums over all stretches for the next factor. A residual of `scale_rad` halves a stretch's say.
-struct WeightedSums {
-  double products = 0.0;
-  double squares = 0.0;
-  double residuals = 0.0;  ///< of the factor's variance
-};
-
-WeightedSums SumsAt(const std::vector<StretchPair>& pairs, double factor, double scale_rad) {
-  WeightedSums sums;
-  for (const StretchPair& pair : pairs) {
-    const double residual = pair.by_scans.theta - factor * pair.by_wheels.theta;
-    const double ratio = residual / scale_rad;
-    const double weight = 1.0 / (1.0 + ratio * ratio);
-    sums.products += weight * pair.by_scans.theta * pair.by_wheels.theta;
-    sums.squares += weight * pair.by_wheels.theta * pair.by_wheels.theta;
-    sums.residuals +=
-        weight * weight * residual * residual * pair.by_wheels.theta * pair.by_wheels.theta;
-  }
-  return sums;
-}
-
-TurnFit FitTurns(const std::vector<StretchPair>& pairs) {
-  TurnFit fit;
-  // Weights of bounded squares, from a factor of one on.
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    const WeightedSums sums = SumsAt(pairs, fit.factor, DegToRad(kMostResidual));
-    if (!(sums.squares > 1e-9)) break;
-    fit.factor = sums.products / sums.squares;
-  }
-  for (const StretchPair& pair : pairs) {
-    fit.left += Bounded(pair.by_scans.theta - fit.factor * pair.by_wheels.theta);
-    fit.without += Bounded(pair.by_scans.theta);
-    fit.as_told += Bounded(pair.by_scans.theta - pair.by_wheels.theta);
-  }
-  const double count = std::max<double>(1.0, static_cast<double>(pairs.size()));
-  fit.left /= count;
-  fit.without /= count;
-  fit.as_told /= count;
-  return fit;
-}
-
-double Turning(const std::vector<StretchPair>& pairs) {
-  double turning = 0.0;
-  for (const StretchPair& pair : pairs) {
-    if (std::abs(pair.by_scans.theta) >= DegToRad(kTurns)) turning += std::abs(pair.by_scans.theta);
-  }
-  return turning;
-}
 
 /// The clock at which turns by wheels leave least of those by scans.
 std::optional<Estimated> FindClock(const std::vector<Stretch>& stretches, const Wheels& wheels) {
-  const std::vector<StretchPair> as_stamped = Paired(stretches, wheels, 0.0);
+  TurnsByClock by_clock(stretches, wheels);
+  const std::vector<TurnPair> as_stamped = by_clock.At(0.0);
   const double at_zero = FitTurns(as_stamped).left;
   // Nothing is left that another clock could explain.
-  const double noise = DegToRad(kTurnSigma) * DegToRad(kTurnSigma);
+  const double noise = DegToRad(kTurnSigmaDeg) * DegToRad(kTurnSigmaDeg);
   if (!as_stamped.empty() && at_zero < noise) return std::nullopt;
+  if (Turning(as_stamped) < kLeastTurning) return std::nullopt;
   Estimated best{0.0, 0.0};
   double least = at_zero;
   std::size_t count = as_stamped.size();
   const int steps = static_cast<int>(kMostAhead / kClockStep);
   std::vector<double> left(static_cast<std::size_t>(2 * steps + 1), at_zero);
   for (int i = -steps; i <= steps; ++i) {
-    const std::vector<StretchPair> pairs = Paired(stretches, wheels, kClockStep * i);
+    const std::vector<TurnPair>& pairs = by_clock.At(kClockStep * i);
     if (pairs.size() < kFewest || 2 * pairs.size() < stretches.size()) continue;
     const TurnFit fit = FitTurns(pairs);
     left[static_cast<std::size_t>(i + steps)] = fit.left;
@@ -168,8 +164,7 @@ std::optional<Estimated> FindClock(const std::vector<Stretch>& stretches, const 
     best.value = kClockStep * i;
     count = pairs.size();
   }
-  if (std::abs(best.value) < kLeastAhead || Turning(as_stamped) < kLeastTurning)
-    return std::nullopt;
+  if (std::abs(best.value) < kLeastAhead) return std::nullopt;
   // So much better that chance is out of the question: what is left at zero is no noise of theirs.
   if (at_zero < 3.0 * least + noise) return std::nullopt;
   // A robot that does the same again and again fits itself at several clocks.
@@ -209,22 +204,10 @@ std::optional<Estimated> IfSurely(const Estimated& factor, double least_fault) {
   return factor;
 }
 
-/// Of turns, beginning with what is nearly right. All stretches have a say: wheels lag behind
-/// scans, and those in which scans turn most are those in which wheels have not yet.
-Estimated FineFactor(const std::vector<StretchPair>& pairs, double factor) {
-  Estimated fine{factor, 0.0};
-  for (int iteration = 0; iteration < 10; ++iteration) {
-    const WeightedSums sums = SumsAt(pairs, fine.value, DegToRad(kTurnSigma));
-    if (!(sums.squares > 1e-9)) break;
-    fine = {sums.products / sums.squares, std::sqrt(sums.residuals) / sums.squares};
-  }
-  return fine;
-}
-
-void JudgeTurns(const std::vector<StretchPair>& pairs, WheelFault* fault) {
+void JudgeTurns(const std::vector<TurnPair>& pairs, WheelFault* fault) {
   if (pairs.size() < kFewest || Turning(pairs) < kLeastTurning) return;
   const TurnFit fit = FitTurns(pairs);
-  const double noise = DegToRad(kTurnSigma) * DegToRad(kTurnSigma);
+  const double noise = DegToRad(kTurnSigmaDeg) * DegToRad(kTurnSigmaDeg);
   if (fit.left > std::max(kUseless * fit.without, 4.0 * noise) && fit.as_told >= fit.left) {
     fault->turns_useless = fit.factor > kMirrored;
     return;
@@ -260,7 +243,7 @@ WheelReport Compare(const std::vector<Stretch>& stretches,
   report.fault.scan_clock_s = FindClock(stretches, wheels);
   const double ahead_s = report.fault.scan_clock_s ? report.fault.scan_clock_s->value : 0.0;
   report.stretches = Paired(stretches, wheels, ahead_s);
-  JudgeTurns(report.stretches, &report.fault);
+  JudgeTurns(TurnsOf(report.stretches), &report.fault);
   JudgeWay(report.stretches, &report.fault);
   return report;
 }

@@ -3,12 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "surface_normals.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -18,77 +15,74 @@ double Square(double value) { return value * value; }
 }  // namespace
 
 LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
-    : options_(options) {
-  width_ = 2 * static_cast<int>(std::ceil(options.reach_m / options.cell_m)) + 1;
-  corner_ = center_in_map.array() - 0.5 * width_ * options.cell_m;
-  slot_of_cell_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_), -1);
+    : options_(options),
+      slots_(2 * static_cast<int>(std::ceil(options.reach_m / options.cell_m)) + 1) {
+  corner_ = center_in_map.array() - 0.5 * slots_.width() * options.cell_m;
 }
 
-int LocalMap::Index(double x, double y) const {
-  const double column = std::floor((x - corner_.x()) / options_.cell_m);
-  const double row = std::floor((y - corner_.y()) / options_.cell_m);
-  // A margin of a window, so that neighbours need no check of their own.
-  const double margin = options_.window_cells;
-  if (!(column >= margin && row >= margin && column < width_ - margin && row < width_ - margin)) {
-    return -1;
-  }
-  return static_cast<int>(row) * width_ + static_cast<int>(column);
+void LocalMap::Moments::operator+=(const Moments& other) {
+  count += other.count;
+  x += other.x;
+  y += other.y;
+  xx += other.xx;
+  xy += other.xy;
+  yy += other.yy;
 }
 
-void LocalMap::Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot) {
-  std::vector<int> touched;
-  Insert(points_in_robot, T_map_robot, touched);
-  UpdateAround(std::move(touched));
+// A margin of a window is left out, so that neighbours need no check of their own.
+bool LocalMap::FindCell(double x, double y, Cell* cell) const {
+  const double column = (x - corner_.x()) / options_.cell_m;
+  const double row = (y - corner_.y()) / options_.cell_m;
+  const double least = options_.window_cells;
+  const double end = slots_.width() - options_.window_cells;
+  if (!(column >= least && row >= least && column < end && row < end)) return false;
+  *cell = {static_cast<int>(column), static_cast<int>(row)};
+  return true;
 }
 
-void LocalMap::Add(const std::vector<PosedPoints>& scans) {
-  std::vector<int> touched;
-  for (const PosedPoints& scan : scans) Insert(*scan.points_in_robot, scan.T_map_robot, touched);
-  UpdateAround(std::move(touched));
-}
-
-std::size_t LocalMap::AddSlot(int index) {
-  std::int32_t& slot = slot_of_cell_[static_cast<std::size_t>(index)];
-  if (slot < 0) {
-    slot = static_cast<std::int32_t>(moments_.size() / kSides);
+std::size_t LocalMap::AddSlot(Cell cell) {
+  const std::size_t slot = slots_.Use(cell);
+  if (slot == known_.size()) {
     moments_.resize(moments_.size() + kSides);
-    distributions_.resize(distributions_.size() + kSides + 1);
+    known_.emplace_back();
   }
-  return static_cast<std::size_t>(slot);
+  return slot;
 }
 
-std::vector<std::uint8_t> LocalMap::SidesOf(const std::vector<Eigen::Vector2f>& normals,
-                                            double theta) const {
+std::vector<std::uint8_t> LocalMap::SidesOf(const FacedPoints& points, double theta) const {
   const auto c = static_cast<float>(std::cos(front_rad_ - theta));
   const auto s = static_cast<float>(std::sin(front_rad_ - theta));
-  std::vector<std::uint8_t> sides;
-  sides.reserve(normals.size());
-  for (const Eigen::Vector2f& normal : normals) {
-    const bool ahead = c * normal.x() + s * normal.y() >= 0.0F;
-    const bool left = c * normal.y() - s * normal.x() >= 0.0F;
-    sides.push_back(static_cast<std::uint8_t>((ahead ? 0 : 1) + (left ? 0 : 2)));
+  std::vector<std::uint8_t> sides(points.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const bool ahead = c * points.normal_x[i] + s * points.normal_y[i] >= 0.0F;
+    const bool left = c * points.normal_y[i] - s * points.normal_x[i] >= 0.0F;
+    sides[i] = static_cast<std::uint8_t>((ahead ? 0 : 1) + (left ? 0 : 2));
   }
   return sides;
 }
 
-void LocalMap::Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
-                      std::vector<int>& touched) {
-  const std::vector<Eigen::Vector2f> normals = NormalsOf(points_in_robot);
-  if (scans_ == 0) front_rad_ = FrontOf(normals, T_map_robot.theta);
-  const std::vector<std::uint8_t> sides = SidesOf(normals, T_map_robot.theta);
+void LocalMap::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot) {
+  if (scans_ == 0) front_rad_ = FrontOf(points_in_robot, T_map_robot.theta);
+  const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot.theta);
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
+  Cell cell;
+  Cell marked;  // by the point before, and of its side
+  std::size_t marked_side = kSides;
+  std::size_t slot = 0;
   for (std::size_t i = 0; i < points_in_robot.size(); ++i) {
-    const pcl::PointXY& point = points_in_robot[i];
-    const double x = T_map_robot.x + c * point.x - s * point.y;
-    const double y = T_map_robot.y + s * point.x + c * point.y;
-    const int index = Index(x, y);
-    if (index < 0) continue;
-    const std::size_t slot = AddSlot(index);
-    const int column = index % width_;
-    const int row = index / width_;
-    const double dx = x - (corner_.x() + (column + 0.5) * options_.cell_m);
-    const double dy = y - (corner_.y() + (row + 0.5) * options_.cell_m);
+    const float px = points_in_robot.x[i];
+    const float py = points_in_robot.y[i];
+    const double x = T_map_robot.x + c * px - s * py;
+    const double y = T_map_robot.y + s * px + c * py;
+    if (!FindCell(x, y, &cell)) continue;
+    if (cell.column != marked.column || cell.row != marked.row || sides[i] != marked_side) {
+      slot = MarkAround(cell, sides[i]);
+      marked = cell;
+      marked_side = sides[i];
+    }
+    const double dx = x - (corner_.x() + (cell.column + 0.5) * options_.cell_m);
+    const double dy = y - (corner_.y() + (cell.row + 0.5) * options_.cell_m);
     Moments& moments = moments_[kSides * slot + sides[i]];
     moments.count += 1.0;
     moments.x += dx;
@@ -96,64 +90,52 @@ void LocalMap::Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robo
     moments.xx += dx * dx;
     moments.xy += dx * dy;
     moments.yy += dy * dy;
-    touched.push_back(index);
   }
   ++scans_;
 }
 
-void LocalMap::UpdateAround(std::vector<int> touched) {
+// Returns the slot of the cell itself.
+std::size_t LocalMap::MarkAround(Cell cell, std::size_t side) {
   const int window = options_.window_cells;
-  const auto sort_unique = [](std::vector<int>& cells) {
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  };
-  sort_unique(touched);
-  std::vector<int> changed;
-  changed.reserve(touched.size() * 9);
-  for (const int index : touched) {
-    for (int dy = -window; dy <= window; ++dy) {
-      for (int dx = -window; dx <= window; ++dx) changed.push_back(index + dy * width_ + dx);
-    }
-  }
-  sort_unique(changed);
-  for (const int index : changed) UpdateDistributions(index % width_, index / width_);
-}
-
-void LocalMap::SumAround(int column, int row, std::array<Moments, kSides + 1>& sums) const {
-  const int window = options_.window_cells;
+  const auto kept = static_cast<std::uint8_t>(~((1U << side) | (1U << kSides)));
   for (int dy = -window; dy <= window; ++dy) {
     for (int dx = -window; dx <= window; ++dx) {
-      const int neighbour_column = column + dx;
-      const int neighbour_row = row + dy;
-      if (neighbour_column < 0 || neighbour_row < 0 || neighbour_column >= width_ ||
-          neighbour_row >= width_) {
-        continue;
-      }
-      const int neighbour = neighbour_row * width_ + neighbour_column;
-      const std::int32_t slot = slot_of_cell_[static_cast<std::size_t>(neighbour)];
-      if (slot < 0) continue;
-      const double ox = dx * options_.cell_m;
-      const double oy = dy * options_.cell_m;
-      for (std::size_t side = 0; side < kSides; ++side) {
-        const Moments& m = moments_[kSides * static_cast<std::size_t>(slot) + side];
-        if (m.count == 0.0) continue;
-        Moments& sum = sums[side];
-        sum.count += m.count;
-        sum.x += m.x + m.count * ox;
-        sum.y += m.y + m.count * oy;
-        sum.xx += m.xx + 2.0 * ox * m.x + m.count * ox * ox;
-        sum.xy += m.xy + ox * m.y + oy * m.x + m.count * ox * oy;
-        sum.yy += m.yy + 2.0 * oy * m.y + m.count * oy * oy;
-      }
+      known_[AddSlot({cell.column + dx, cell.row + dy})].settled &= kept;
     }
   }
+  return static_cast<std::size_t>(slots_.SlotOf(cell));
 }
 
-void LocalMap::Describe(const Moments& sum, int column, int row, Distribution& d) const {
+/// The moments of a side over the window around a cell, about its center.
+LocalMap::Moments LocalMap::SumAround(Cell cell, std::size_t side) const {
+  const int window = options_.window_cells;
+  Moments sum;
+  for (int dy = -window; dy <= window; ++dy) {
+    for (int dx = -window; dx <= window; ++dx) {
+      const Cell neighbour{cell.column + dx, cell.row + dy};
+      if (!slots_.Contains(neighbour)) continue;
+      const std::int32_t slot = slots_.SlotOf(neighbour);
+      if (slot < 0) continue;
+      const Moments& m = moments_[kSides * static_cast<std::size_t>(slot) + side];
+      if (m.count == 0.0) continue;
+      const double ox = dx * options_.cell_m;
+      const double oy = dy * options_.cell_m;
+      sum.count += m.count;
+      sum.x += m.x + m.count * ox;
+      sum.y += m.y + m.count * oy;
+      sum.xx += m.xx + 2.0 * ox * m.x + m.count * ox * ox;
+      sum.xy += m.xy + ox * m.y + oy * m.x + m.count * ox * oy;
+      sum.yy += m.yy + 2.0 * oy * m.y + m.count * oy * oy;
+    }
+  }
+  return sum;
+}
+
+void LocalMap::Describe(const Moments& sum, Cell cell, Distribution& d) const {
   const double mx = sum.x / sum.count;
   const double my = sum.y / sum.count;
-  d.mean_x = static_cast<float>(corner_.x() + (column + 0.5) * options_.cell_m + mx);
-  d.mean_y = static_cast<float>(corner_.y() + (row + 0.5) * options_.cell_m + my);
+  d.mean_x = static_cast<float>(corner_.x() + (cell.column + 0.5) * options_.cell_m + mx);
+  d.mean_y = static_cast<float>(corner_.y() + (cell.row + 0.5) * options_.cell_m + my);
   const double xx = sum.xx / sum.count - mx * mx;
   const double xy = sum.xy / sum.count - mx * my;
   const double yy = sum.yy / sum.count - my * my;
@@ -173,35 +155,28 @@ void LocalMap::Describe(const Moments& sum, int column, int row, Distribution& d
   d.is_known = sum.count >= 2.0;
 }
 
-void LocalMap::UpdateDistributions(int column, int row) {
-  std::array<Moments, kSides + 1> sums;  // the last: of all sides
-  SumAround(column, row, sums);
-  Moments& all = sums[kSides];
-  std::size_t only_side = kSides;
-  for (std::size_t side = 0; side < kSides; ++side) {
-    if (sums[side].count == 0.0) continue;
-    only_side = all.count == 0.0 ? side : kSides;
-    all.count += sums[side].count;
-    all.x += sums[side].x;
-    all.y += sums[side].y;
-    all.xx += sums[side].xx;
-    all.xy += sums[side].xy;
-    all.yy += sums[side].yy;
+const LocalMap::Distribution& LocalMap::Settled(std::size_t slot, std::size_t side) const {
+  Distribution& known = known_[slot].of_side[side];
+  if ((known_[slot].settled >> side & 1U) != 0) return known;
+  known_[slot].settled |= static_cast<std::uint8_t>(1U << side);
+  const Cell cell = slots_.CellOf(slot);
+  Moments sum;
+  if (side < kSides) {
+    sum = SumAround(cell, side);
+  } else {
+    for (std::size_t one = 0; one < kSides; ++one) sum += SumAround(cell, one);
   }
-  const std::size_t slot = AddSlot(row * width_ + column);
-  for (std::size_t side = 0; side <= kSides; ++side) {
-    const Moments& sum = sums[side];
-    if (sum.count == 0.0) continue;
-    Distribution& d = distributions_[(kSides + 1) * slot + side];
-    if (side == kSides && only_side < kSides) {
-      d = distributions_[(kSides + 1) * slot + only_side];
-      continue;
-    }
-    Describe(sum, column, row, d);
-  }
+  if (sum.count > 0.0) Describe(sum, cell, known);
+  return known;
 }
 
-double LocalMap::Step(const ScanPoints& points, const std::vector<std::uint8_t>& sides,
+// The face that is seen, where it is known as a line; else all that is known of the place.
+const LocalMap::Distribution& LocalMap::Seen(std::size_t slot, std::size_t side) const {
+  const Distribution& face = Settled(slot, side);
+  return face.is_line ? face : Settled(slot, kSides);
+}
+
+double LocalMap::Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
                       const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
                       Eigen::Vector3d& gradient) const {
   const double c = std::cos(T_map_robot.theta);
@@ -210,17 +185,14 @@ double LocalMap::Step(const ScanPoints& points, const std::vector<std::uint8_t>&
   const double outlier = 1.0 / Square(options_.outlier_sigmas);
   double inliers = 0.0;
   double h00 = 0, h01 = 0, h02 = 0, h11 = 0, h12 = 0, h22 = 0, g0 = 0, g1 = 0, g2 = 0;
+  Cell cell;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const pcl::PointXY& point = points[i];
-    const double rx = c * point.x - s * point.y;
-    const double ry = s * point.x + c * point.y;
-    const int index = Index(T_map_robot.x + rx, T_map_robot.y + ry);
-    if (index < 0) continue;
-    const std::int32_t slot = slot_of_cell_[static_cast<std::size_t>(index)];
+    const double rx = c * points.x[i] - s * points.y[i];
+    const double ry = s * points.x[i] + c * points.y[i];
+    if (!FindCell(T_map_robot.x + rx, T_map_robot.y + ry, &cell)) continue;
+    const std::int32_t slot = slots_.SlotOf(cell);
     if (slot < 0) continue;
-    // The face that is seen, where it is known as a line; else all that is known of the place.
-    const Distribution* of_sides = &distributions_[(kSides + 1) * static_cast<std::size_t>(slot)];
-    const Distribution& d = of_sides[of_sides[sides[i]].is_line ? sides[i] : kSides];
+    const Distribution& d = Seen(static_cast<std::size_t>(slot), sides[i]);
     if (!d.is_known) continue;
     const double ex = T_map_robot.x + rx - d.mean_x;
     const double ey = T_map_robot.y + ry - d.mean_y;
@@ -253,29 +225,29 @@ double LocalMap::Step(const ScanPoints& points, const std::vector<std::uint8_t>&
   return inliers;
 }
 
-double LocalMap::Agreement(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                            double sigma_m) const {
   if (points_in_robot.empty()) return 0.0;
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
-  const std::vector<std::uint8_t> sides = SidesOf(NormalsOf(points_in_robot), T_map_robot.theta);
+  const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot.theta);
   return Step(points_in_robot, sides, T_map_robot, sigma_m, hessian, gradient) /
          static_cast<double>(points_in_robot.size());
 }
 
-Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                           const Eigen::Matrix3d& prior_information) const {
   return Align(points_in_robot, T_map_robot_guess, prior_information,
                options_.guess_outlier_sigmas);
 }
 
-Alignment LocalMap::AlignHeld(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+Alignment LocalMap::AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                               const Eigen::Matrix3d& prior_information) const {
   return Align(points_in_robot, T_map_robot_guess, prior_information,
                std::numeric_limits<double>::infinity());
 }
 
-Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                           const Eigen::Matrix3d& prior_information,
                           double guess_outlier_sigmas) const {
   Alignment result;
@@ -283,8 +255,7 @@ Alignment LocalMap::Align(const ScanPoints& points_in_robot, const Pose2& T_map_
   if (points_in_robot.empty()) return result;
   double sigma = options_.first_sigma_m;
   // A guess turns by less than what lies between the walls of a building and the border of sides.
-  const std::vector<std::uint8_t> sides =
-      SidesOf(NormalsOf(points_in_robot), T_map_robot_guess.theta);
+  const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot_guess.theta);
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
   for (; result.iterations < options_.max_iterations; ++result.iterations) {

@@ -151,5 +151,26 @@ TEST(LocalMap, TheTwoFacesOfAThinWallDoNotPullAtEachOther) {
   EXPECT_LT(error_deg, 0.08) << "deg";
 }
 
+TEST(LocalMap, IsTheSameHoweverOftenItIsLookedAt) {
+  const BoxScene room = FurnishedRoom();
+  std::mt19937 random(5);
+  LocalMap looked_at({}, {3.0, 3.0});
+  LocalMap left_alone({}, {3.0, 3.0});
+  const FacedPoints points(*PointsInRobot(room.Scan({2.9, 2.6, 0.2}, 361, 270.0, &random)));
+  const Pose2 guess{2.95, 2.63, 0.22};
+  for (int i = 0; i < 12; ++i) {
+    const Pose2 pose{2.0 + 0.15 * i, 2.5, 0.1 * i};
+    const FacedPoints added(*PointsInRobot(room.Scan(pose, 361, 270.0, &random)));
+    looked_at.Add(added, pose);
+    looked_at.Align(points, guess, Eigen::Matrix3d::Zero());
+    left_alone.Add(added, pose);
+  }
+  const Alignment a = looked_at.Align(points, guess, Eigen::Matrix3d::Zero());
+  const Alignment b = left_alone.Align(points, guess, Eigen::Matrix3d::Zero());
+  EXPECT_EQ(a.T_map_robot.AsVector(), b.T_map_robot.AsVector());
+  EXPECT_EQ(a.information, b.information);
+  EXPECT_EQ(a.inlier_share, b.inlier_share);
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -95,12 +95,22 @@ class ScanOdometry {
     std::optional<LocalMap> next;         ///< grows until it is large enough to take over
     std::optional<Pose2> T_map_keyframe;  ///< of the scan added last
   };
-  /// What is looked at of a scan.
-  struct View {
-    ScanPoints::ConstPtr points;
+  /// What is looked at of a scan, made when it is.
+  class View {
+   public:
+    View(const LaserScan& scan, double reach_m) : scan_(scan), reach_m_(reach_m) {}
+
+    const FacedPoints& Points() { return Within(reach_m_, &points_); }
     /// Where the points of a map end, they would hold back a robot that moves on: it gets more.
-    ScanPoints::ConstPtr map_points;
-    ScanPoints::ConstPtr all_points;
+    const FacedPoints& MapPoints();
+    const FacedPoints& AllPoints();
+
+   private:
+    const FacedPoints& Within(double reach_m, std::optional<FacedPoints>* points);
+
+    const LaserScan& scan_;
+    double reach_m_;
+    std::optional<FacedPoints> points_, map_points_, all_points_;
   };
   /// What the wheels say since the scan matched last.
   struct Prediction {
@@ -113,23 +123,22 @@ class ScanOdometry {
     Eigen::Matrix3d prior = Eigen::Matrix3d::Zero();
   };
 
-  View ViewOf(const LaserScan& scan) const;
-  void Begin(const View& view, const Pose2& T_last_now);
+  void Begin(View& view, const Pose2& T_last_now);
   bool Predict(const UncertainPose2& T_last_now);
   Prediction PriorOf(bool is_at_rest) const;
   bool NeedsNoMatch() const;
-  bool IsAnotherScene(const View& view) const;
+  bool IsAnotherScene(View& view) const;
   bool Believe(const Alignment& aligned, const Prediction& predicted, bool must_match) const;
   UncertainPose2 Fuse(const Alignment& aligned, const Prediction& predicted,
                       const Pose2& T_map_last);
   UncertainPose2 GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted);
-  void BeginAnew(const View& view);
-  void KeepMap(const View& view);
-  void AddToYoungMap(const View& view);
-  void AddKeyframe(const ScanPoints& points);
-  Alignment AlignUnlessOverruled(const ScanPoints& points, const Pose2& T_map_guess,
+  void BeginAnew(View& view);
+  void KeepMap(View& view);
+  void AddToYoungMap(View& view);
+  void AddKeyframe(const FacedPoints& points);
+  Alignment AlignUnlessOverruled(const FacedPoints& points, const Pose2& T_map_guess,
                                  const Eigen::Matrix3d& prior_information) const;
-  Alignment AlignFromSeveralGuesses(const ScanPoints& points, const Pose2& T_map_guess,
+  Alignment AlignFromSeveralGuesses(const FacedPoints& points, const Pose2& T_map_guess,
                                     const Eigen::Matrix3d& prior_information) const;
 
   ScanOdometryOptions options_;

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/scan_matching/cell_slots.hpp"
+#include "masked_mapper/scan_matching/faced_points.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
@@ -41,57 +43,42 @@ struct Alignment {
   bool converged = false;
 };
 
+/// Not to be looked at by several threads at once: what a cell's surroundings look like is worked
+/// out when a point first asks for it, since most of them change many times before one does.
 class LocalMap {
  public:
   /// Points will be kept within `reach_m` of `center_in_map`.
   LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map);
 
-  struct PosedPoints {
-    ScanPoints::ConstPtr points_in_robot;
-    Pose2 T_map_robot;
-  };
-  void Add(const ScanPoints& points_in_robot, const Pose2& T_map_robot);
-  /// The same as one after the other, at less cost.
-  void Add(const std::vector<PosedPoints>& scans);
+  void Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot);
 
   /// Gauss-Newton from `T_map_robot_guess`, held by `prior_information` of the guess (zero: free).
   /// Without a point in reach of the map: the guess, zero information, not converged.
-  Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+  Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                   const Eigen::Matrix3d& prior_information) const;
 
   /// The same with a guess that keeps its say whatever the points hold against it.
-  Alignment AlignHeld(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+  Alignment AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                       const Eigen::Matrix3d& prior_information) const;
 
   /// Share of the points that agree with the map at a pose, 0-1: a cheap score to compare guesses.
-  double Agreement(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
+  double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
 
   std::size_t scans() const { return scans_; }
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (mapping/state_archive.hpp). What is known of a cell's
+  /// surroundings follows from its points.
   template <class Archive>
   void Serialize(Archive& archive) {
-    // Most cells are empty: which cell a slot is of takes less room than the slot of every cell.
-    std::vector<std::int32_t> cell_of_slot(moments_.size() / kSides);
-    for (std::size_t cell = 0; cell < slot_of_cell_.size(); ++cell) {
-      const std::int32_t slot = slot_of_cell_[cell];
-      if (slot >= 0) cell_of_slot[static_cast<std::size_t>(slot)] = static_cast<std::int32_t>(cell);
-    }
-    archive(corner_, cell_of_slot, moments_, distributions_, scans_, front_rad_);
+    std::vector<std::int32_t> cells = slots_.cells();
+    archive(corner_, cells, moments_, scans_, front_rad_);
     if constexpr (Archive::kReads) {
-      if (moments_.size() != kSides * cell_of_slot.size() ||
-          distributions_.size() != (kSides + 1) * cell_of_slot.size()) {
+      if (moments_.size() != kSides * cells.size()) {
         archive.Refuse("a local map that does not hold together");
       }
-      slot_of_cell_.assign(slot_of_cell_.size(), -1);
-      for (std::size_t slot = 0; slot < cell_of_slot.size(); ++slot) {
-        const std::int32_t cell = cell_of_slot[slot];
-        if (cell < 0 || static_cast<std::size_t>(cell) >= slot_of_cell_.size()) {
-          archive.Refuse("a local map with a cell outside");
-        }
-        slot_of_cell_[static_cast<std::size_t>(cell)] = static_cast<std::int32_t>(slot);
-      }
+      if (!slots_.Take(cells)) archive.Refuse("a local map with a cell outside, or one twice");
+      known_.assign(cells.size(), {});
     }
   }
 
@@ -101,6 +88,8 @@ class LocalMap {
   struct Moments {
     double count = 0.0;
     double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
+
+    void operator+=(const Moments& other);
 
     template <class Archive>
     void Serialize(Archive& archive) {
@@ -113,37 +102,34 @@ class LocalMap {
     float small = 0.0F, large = 0.0F;        ///< variances, m^2
     bool is_line = false;
     bool is_known = false;
-
-    template <class Archive>
-    void Serialize(Archive& archive) {
-      archive(mean_x, mean_y, normal_x, normal_y, small, large, is_line, is_known);
-    }
   };
+  /// What is known of a cell's surroundings: of each side, and of all of them together.
+  struct Surroundings {
+    std::array<Distribution, kSides + 1> of_side;
+    std::uint8_t settled = 0;  ///< a bit for each side: no point came since it was worked out
+  };
+  using Cell = CellSlots::Cell;
 
-  Alignment Align(const ScanPoints& points_in_robot, const Pose2& T_map_robot_guess,
+  Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                   const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
-  int Index(double x, double y) const;
-  std::size_t AddSlot(int index);
-  std::vector<std::uint8_t> SidesOf(const std::vector<Eigen::Vector2f>& normals,
-                                    double theta) const;
-  void Insert(const ScanPoints& points_in_robot, const Pose2& T_map_robot,
-              std::vector<int>& touched);
-  void UpdateAround(std::vector<int> touched);
-  void UpdateDistributions(int column, int row);
-  /// The moments of each side over the window around a cell, about its center.
-  void SumAround(int column, int row, std::array<Moments, kSides + 1>& sums) const;
-  void Describe(const Moments& sum, int column, int row, Distribution& distribution) const;
-  double Step(const ScanPoints& points, const std::vector<std::uint8_t>& sides,
+  bool FindCell(double x, double y, Cell* cell) const;
+  std::size_t AddSlot(Cell cell);
+  std::vector<std::uint8_t> SidesOf(const FacedPoints& points, double theta) const;
+  std::size_t MarkAround(Cell cell, std::size_t side);
+  const Distribution& Seen(std::size_t slot, std::size_t side) const;
+  const Distribution& Settled(std::size_t slot, std::size_t side) const;
+  Moments SumAround(Cell cell, std::size_t side) const;
+  void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
+  double Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
               const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
               Eigen::Vector3d& gradient) const;
 
   LocalMapOptions options_;
-  double front_rad_ = 0.0;                  ///< surfaces that face within 90 deg of it are in front
-  Eigen::Vector2d corner_;                  ///< of cell (0, 0), in map
-  int width_ = 0;                           ///< cells to a side
-  std::vector<std::int32_t> slot_of_cell_;  ///< -1: nothing near
-  std::vector<Moments> moments_;            ///< of each slot, side by side
-  std::vector<Distribution> distributions_;  ///< alike
+  double front_rad_ = 0.0;  ///< surfaces that face within 90 deg of it are in front
+  Eigen::Vector2d corner_;  ///< of cell (0, 0), in map
+  CellSlots slots_;
+  std::vector<Moments> moments_;             ///< of each slot, side by side
+  mutable std::vector<Surroundings> known_;  ///< of each slot, worked out where it is looked at
   std::size_t scans_ = 0;
 };
 
