@@ -10,10 +10,8 @@ namespace {
 
 constexpr std::uint64_t kFirstScans = 50;  // all are looked at, then one of kStride
 constexpr std::uint64_t kStride = 8;
-constexpr double kBinsPerFactorTen = 12.0;
-constexpr double kLeastBin = -2.0;  // the logarithm of the first bin, 1 cm
 // No room has half of its walls farther away than this, and no scanner sees as far.
-constexpr double kNoMetres = 100.0;
+constexpr float kNoMetres = 100.0F;
 constexpr double kNearShare = 0.05;    // of all ranges
 constexpr double kVaries = 0.3;        // m; what is part of the robot stays where it is
 constexpr double kSameSurface = 0.05;  // m, and share of the range
@@ -32,9 +30,7 @@ void ScannerEvidence::Add(const RosLaserScan& scan, double least_range) {
     const float range = scan.ranges[beam];
     if (!std::isfinite(range) || !(range > 0.0F)) continue;
     ++finite_;
-    const double bin = (std::log10(static_cast<double>(range)) - kLeastBin) * kBinsPerFactorTen;
-    ++histogram_[static_cast<std::size_t>(
-        std::clamp(bin, 0.0, static_cast<double>(histogram_.size() - 1)))];
+    far_ += range > kNoMetres ? 1 : 0;
     if (range >= scan.range_min && range < scan.range_max) ++within_;
     if (range >= scan.range_min || range < least_range) continue;
     const float next = scan.ranges[(beam + 1) % beams];
@@ -43,17 +39,6 @@ void ScannerEvidence::Add(const RosLaserScan& scan, double least_range) {
     nearest_[beam] = std::min(nearest_[beam], range);
     farthest_[beam] = std::max(farthest_[beam], range);
   }
-}
-
-double ScannerEvidence::Median() const {
-  std::uint64_t below = 0;
-  for (std::size_t i = 0; i < histogram_.size(); ++i) {
-    below += histogram_[i];
-    if (2 * below >= finite_) {
-      return std::pow(10.0, kLeastBin + static_cast<double>(i) / kBinsPerFactorTen);
-    }
-  }
-  return 0.0;
 }
 
 double ScannerEvidence::ShareWithinLimits() const {
@@ -65,7 +50,7 @@ ScannerRanges ScannerEvidence::Find() const {
   if (finite_ == 0) return ranges;
   const auto all = static_cast<double>(finite_);
   constexpr double kMillimetre = 0.001;  // m
-  if (Median() > kNoMetres) {
+  if (2 * far_ > finite_) {
     ranges.scale = kMillimetre;
     return ranges;
   }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -44,16 +43,14 @@ class ScannerEvidence {
   double nearest_of_clouds() const { return nearest_of_clouds_; }
 
  private:
-  double Median() const;
-
   std::uint64_t scans_ = 0;
   std::uint64_t finite_ = 0;  ///< ranges that are a number above 0, as all below
   std::uint64_t within_ = 0;  ///< the limits of their message
   std::uint64_t near_ = 0;    ///< below range_min, and like their neighbour: a surface, no noise
   double range_min_ = 0.0;
   double nearest_of_clouds_ = std::numeric_limits<double>::infinity();
-  std::array<std::uint64_t, 96> histogram_{};  ///< of the logarithm
-  std::vector<float> nearest_;                 ///< per beam, of what is counted in near_
+  std::uint64_t far_ = 0;       ///< farther away than the walls of any room
+  std::vector<float> nearest_;  ///< per beam, of what is counted in near_
   std::vector<float> farthest_;
 };
 
