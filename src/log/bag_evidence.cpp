@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "bag_findings.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 
 namespace masked_mapper {
@@ -16,7 +17,6 @@ constexpr std::size_t kScansForLimit = 300;
 constexpr std::size_t kScansForClock = 50;
 constexpr std::size_t kMostFrames = 16;  // of one topic
 constexpr double kOutOfOrder = 5.0;      // s; what comes less late is put in order in passing
-constexpr double kNoLidar = 20.0;  // m; every lidar on a robot sees something nearer, if but once
 constexpr double kLeastReach = 10.0;     // m, of a 3D lidar that stands in a closet
 constexpr double kBeyondFarthest = 1.1;  // how far it sees at most, of what it saw at first
 constexpr double kTravels = 0.3;         // m, of a link that odometry moves
@@ -268,65 +268,12 @@ void BagEvidence::SetLimit(BagPlan* plan) const {
 }
 
 std::vector<SensorFinding> BagEvidence::Findings(const BagPlan& plan) const {
-  std::vector<SensorFinding> findings;
-  const auto add = [&](const std::string& what, double value, const std::string& consequence) {
-    findings.push_back({what, value, 0.0, first_time_ + plan.clock_offset,
-                        newest_time_ + plan.clock_offset, consequence});
-  };
-  if (plan.is_disordered) {
-    add("messages of the bag that stand later than others recorded seconds after them", 1.0,
-        "all are put in the order of their recording");
-  }
-  for (std::size_t i = 0; i < plan.topics.size(); ++i) {
-    const std::string& name = plan.topics[i].name;
-    const TopicClock& clock = plan.clocks[i];
-    if (!clock.offset || plan.topics[i].kind == TopicKind::kTransforms) continue;
-    const ClockEvidence::Strays strays = ClockOf(i).FindStrays(clock);
-    if (std::abs(*clock.offset - plan.clock_offset) > kClocksApart) {
-      add("clock of " + name + " against that of " + plan.topics.front().name + ", s",
-          *clock.offset - plan.clock_offset, "its readings are stamped by their recording");
-    } else if (clock.whole_seconds) {
-      add("stamps of " + name + " in whole seconds, s", 1.0,
-          "its readings are stamped by their recording");
-    } else if (clock.is_steady && strays.share > 0.0) {
-      findings.push_back({"share of the stamps of " + name + " by another clock", strays.share, 0.0,
-                          strays.first + *clock.offset, strays.last + *clock.offset,
-                          "those readings are stamped by their recording"});
-    }
-  }
+  BagFindings findings(plan, first_time_, newest_time_);
+  for (std::size_t i = 0; i < plan.topics.size(); ++i) findings.AddClock(i, ClockOf(i));
   for (std::size_t scanner = 0; scanner < plan.scanners; ++scanner) {
-    const std::string& name = plan.topics[scanner].name;
-    const ScannerEvidence& evidence = EvidenceOf(scanner);
-    if (!plan.topics[scanner].frame.empty()) {
-      std::string others;
-      double left_out = 0.0;
-      for (const auto& [frame, other] : scanners_[scanner]) {
-        if (frame == plan.topics[scanner].frame) continue;
-        others += (others.empty() ? "`" : ", `") + frame + "`";
-        left_out += static_cast<double>(other.scans());
-      }
-      add("scans of other frames on " + name, left_out,
-          "those of `" + plan.topics[scanner].frame + "` are taken, those of " + others +
-              " left out");
-    }
-    if (evidence.nearest_of_clouds() > kNoLidar && std::isfinite(evidence.nearest_of_clouds())) {
-      add("nearest return of all on " + name + ", m", evidence.nearest_of_clouds(),
-          "these clouds are not told from where the lidar is, and scans cut from them are wrong: "
-          "read the topic of its driver");
-    }
-    if (plan.ranges[scanner].scale != 1.0) {
-      add("unit of the ranges of " + name + ", m", plan.ranges[scanner].scale,
-          "they are read as millimetres");
-    } else if (!plan.ranges[scanner].believes_range_min) {
-      add("range_min of " + name + ", m", evidence.range_min(),
-          "nearer ranges see surfaces all the same and are taken");
-    } else if (evidence.ShareWithinLimits() < 0.01) {
-      add("share of the ranges of " + name + " within the limits that it states",
-          evidence.ShareWithinLimits(),
-          "they cannot be read: neither as metres nor as millimetres");
-    }
+    findings.AddScanner(scanner, FrameOf(scanner), scanners_[scanner]);
   }
-  return findings;
+  return findings.Take();
 }
 
 }  // namespace masked_mapper
