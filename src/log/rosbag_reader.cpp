@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rosbag_reader.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <mutex>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "bag_observations.hpp"
 #include "bag_sequence.hpp"
 #include "bag_without_scans.hpp"
+#include "kept_pass.hpp"
 #include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/read_ahead.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -101,12 +103,23 @@ class RosBagPlan final : public LogPlan {
   std::unique_ptr<LogReader> Read() override {
     LogStatistics statistics;
     statistics.max_range = plan_.max_range;
+    if (kept_ && kept_->IsWhole()) {
+      return std::make_unique<ReadAhead>(
+          statistics, [kept = kept_](const ReadAhead::Sink& sink) { kept->Replay(sink); });
+    }
+    kept_ = HasClouds() ? std::make_shared<KeptPass>() : nullptr;
     const auto pass = [options = options_, plan = plan_, topics = topics_, shelf = shelf_,
+                       kept = kept_,
                        whole = is_settled_ ? nullptr : whole_](const ReadAhead::Sink& sink) {
       std::unique_ptr<RosBag> bag = shelf->Take();
       std::unique_ptr<BagEvidence> evidence;
       if (whole) evidence = std::make_unique<BagEvidence>(options, topics);
-      const bool to_the_end = ReadBag(options, plan, bag.get(), evidence.get(), sink);
+      const auto keep = [&](ObservationBatch batch) {
+        if (kept) kept->Add(batch);
+        return sink(std::move(batch));
+      };
+      const bool to_the_end = ReadBag(options, plan, bag.get(), evidence.get(), keep);
+      if (kept && to_the_end) kept->Finish();
       shelf->PutBack(std::move(bag));
       if (!whole || !to_the_end) return;
       const std::lock_guard<std::mutex> lock(whole->mutex);
@@ -125,7 +138,10 @@ class RosBagPlan final : public LogPlan {
       plan.max_range = plan_.max_range;
       plan.no_return = plan_.no_return;
     }
-    if (otherwise) plan_ = std::move(plan);
+    if (otherwise) {
+      plan_ = std::move(plan);
+      kept_.reset();
+    }
     if (plan_.is_disordered) SortShelf();
     findings_ = whole_->evidence->Findings(plan_);
     whole_->evidence.reset();
@@ -135,6 +151,11 @@ class RosBagPlan final : public LogPlan {
   std::vector<SensorFinding> Findings() const override { return findings_; }
 
  private:
+  bool HasClouds() const {
+    return std::any_of(plan_.topics.begin(), plan_.topics.end(),
+                       [](const BagTopic& topic) { return topic.kind == TopicKind::kCloud; });
+  }
+
   bool LimitIsOtherwise(const BagPlan& plan) const {
     return plan.ranges.front().scale != plan_.ranges.front().scale;
   }
@@ -153,6 +174,7 @@ class RosBagPlan final : public LogPlan {
   BagShelf::Open open_;
   std::shared_ptr<BagShelf> shelf_;
   std::shared_ptr<WholeBag> whole_;
+  std::shared_ptr<KeptPass> kept_;  ///< of the last pass through clouds, by the plan
   BagPlan topics_;
   BagPlan plan_;
   bool is_settled_ = false;

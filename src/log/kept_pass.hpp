@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pass through a log gave, so that the next one need not make it again: to cut the clouds of
+// a 3D lidar to scans takes longer than all that is done with the scans, which are a hundredth of
+// the clouds. They lie in a temporary file that has no name any more: whatever ends the program, it
+// leaves nothing behind.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "masked_mapper/log/read_ahead.hpp"
+
+namespace masked_mapper {
+
+class KeptPass {
+ public:
+  /// Without a place for the file nothing is ever kept.
+  KeptPass();
+
+  /// The batches of one pass, in order.
+  void Add(const ObservationBatch& batch);
+  /// The pass went to the end of the log.
+  void Finish();
+  /// Whether all of a pass is here. From then on it may be replayed, also by several at once.
+  bool IsWhole() const;
+
+  /// Hands the batches out as the pass did, all with its statistics at the end; ends early when the
+  /// sink wants no more. Throws std::runtime_error: the file cannot be read any more.
+  void Replay(const ReadAhead::Sink& sink) const;
+
+ private:
+  struct Place {
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;  ///< bytes
+    double progress = 0.0;
+  };
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  std::unique_ptr<std::FILE, CloseFile> file_;  ///< none: it failed
+  std::vector<Place> places_;
+  std::uint64_t end_ = 0;     ///< bytes
+  LogStatistics statistics_;  ///< as of the last batch
+  mutable std::mutex mutex_;
+  bool is_whole_ = false;
+};
+
+}  // namespace masked_mapper
