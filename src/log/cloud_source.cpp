@@ -2,12 +2,16 @@
 #include "masked_mapper/log/cloud_source.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <thread>
 #include <utility>
 
+#include "bag_ahead.hpp"
 #include "bag_look.hpp"
 #include "bag_plan.hpp"
 #include "bag_sequence.hpp"
 #include "cloud_scanner.hpp"
+#include "masked_mapper/log/bounded_queue.hpp"
 #include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
@@ -45,10 +49,48 @@ class CloudSource::Impl {
       lidars_.emplace_back(options_, T_robot_lidar, static_cast<float>(plan_.max_range));
     }
     streams_ = std::make_unique<BagStreams>(plan_, *bag_);
+    ahead_.emplace(bag_.get());
+    thread_ = std::thread([this] { Produce(); });
   }
+  ~Impl() {
+    clouds_.Close();
+    thread_.join();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   std::optional<LevelledCloud> Next() {
-    while (const std::optional<BagMessage> message = bag_->Next()) {
+    std::optional<Made> made = clouds_.Pop();
+    if (!made) {
+      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+      progress_ = 1.0;
+      return std::nullopt;
+    }
+    progress_ = made->progress;
+    return std::move(made->cloud);
+  }
+
+  double Progress() const { return progress_; }
+
+ private:
+  struct Made {
+    LevelledCloud cloud;
+    double progress = 0.0;
+  };
+
+  void Produce() {
+    try {
+      while (std::optional<LevelledCloud> cloud = Make()) {
+        if (!clouds_.Push({std::move(*cloud), ahead_->Progress()})) break;
+      }
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    clouds_.Close();
+  }
+
+  std::optional<LevelledCloud> Make() {
+    while (const std::optional<BagMessage> message = ahead_->Next()) {
       const std::optional<std::size_t> stream = streams_->Find(message->connection);
       if (!stream) continue;
       auto parsed = ParseMessage(plan_.topics[*stream].kind, *message, options_);
@@ -62,9 +104,6 @@ class CloudSource::Impl {
     return std::nullopt;
   }
 
-  double Progress() const { return bag_->Progress(); }
-
- private:
   void NoteMotion(std::size_t stream, double time, const RosMessage& message) {
     if (const auto* odometry = std::get_if<RosOdometry>(&message)) {
       motion_.Add(plan_.ReadingOf(stream, time, *odometry));
@@ -83,6 +122,12 @@ class CloudSource::Impl {
   std::unique_ptr<BagStreams> streams_;
   std::vector<CloudScanner> lidars_;
   RobotMotion motion_;
+  std::optional<BagAhead> ahead_;
+  static constexpr std::size_t kCloudsAhead = 8;
+  BoundedQueue<Made> clouds_{kCloudsAhead};
+  std::exception_ptr error_;  ///< written before the queue is closed, read after
+  double progress_ = 0.0;
+  std::thread thread_;  ///< makes the clouds, while whoever takes them is at work on the one before
 };
 
 CloudSource::CloudSource(const std::vector<std::string>& paths, const LogOptions& options)

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <utility>
 
+#include "bag_ahead.hpp"
 #include "bag_look.hpp"
 #include "bag_observations.hpp"
 #include "bag_sequence.hpp"
@@ -118,7 +120,11 @@ class RosBagPlan final : public LogPlan {
         if (kept) kept->Add(batch);
         return sink(std::move(batch));
       };
-      const bool to_the_end = ReadBag(options, plan, bag.get(), evidence.get(), keep);
+      std::optional<BagAhead> ahead;
+      if (kept) ahead.emplace(bag.get());
+      RosBag* const read = ahead ? &*ahead : bag.get();
+      const bool to_the_end = ReadBag(options, plan, read, evidence.get(), keep);
+      ahead.reset();
       if (kept && to_the_end) kept->Finish();
       shelf->PutBack(std::move(bag));
       if (!whole || !to_the_end) return;

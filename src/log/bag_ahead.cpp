@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_ahead.hpp"
+
+#include <utility>
+
+namespace masked_mapper {
+namespace {
+
+constexpr std::size_t kBatchBytes = std::size_t{1} << 20U;
+constexpr std::size_t kBatchMessages = 256;
+constexpr std::size_t kBatchesAhead = 4;
+
+}  // namespace
+
+BagAhead::BagAhead(RosBag* bag) : bag_(*bag), connections_(bag->Connections()) { Start(); }
+
+BagAhead::~BagAhead() { Stop(); }
+
+void BagAhead::Start() {
+  batch_ = {};
+  batch_.truncated = bag_.Truncated();
+  batch_.damaged = bag_.Damaged();
+  batch_.first_damage = bag_.FirstDamage();
+  next_ = 0;
+  error_ = nullptr;
+  batches_.emplace(kBatchesAhead);
+  thread_ = std::thread([this] {
+    try {
+      bool more = true;
+      while (more) {
+        Batch batch;
+        more = Fill(&batch);
+        if (!batches_->Push(std::move(batch))) break;
+      }
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    batches_->Close();
+  });
+}
+
+void BagAhead::Stop() {
+  batches_->Close();
+  thread_.join();
+}
+
+bool BagAhead::Fill(Batch* batch) {
+  bool more = true;
+  while (batch->bytes.size() < kBatchBytes && batch->messages.size() < kBatchMessages) {
+    const std::optional<BagMessage> message = bag_.Next();
+    more = message.has_value();
+    if (!more) break;
+    batch->messages.push_back(*message);
+    batch->begins.push_back(batch->bytes.size());
+    batch->bytes.insert(batch->bytes.end(), message->data, message->data + message->size);
+  }
+  batch->truncated = bag_.Truncated();
+  batch->damaged = bag_.Damaged();
+  batch->first_damage = bag_.FirstDamage();
+  batch->progress = bag_.Progress();
+  return more;
+}
+
+std::optional<BagMessage> BagAhead::Next() {
+  while (next_ == batch_.messages.size()) {
+    std::optional<Batch> batch = batches_->Pop();
+    if (!batch) {
+      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+      return std::nullopt;
+    }
+    batch_ = std::move(*batch);
+    next_ = 0;
+  }
+  BagMessage message = batch_.messages[next_];
+  message.data = batch_.bytes.data() + batch_.begins[next_];
+  ++next_;
+  return message;
+}
+
+void BagAhead::Rewind() {
+  Stop();
+  bag_.Rewind();
+  Start();
+}
+
+}  // namespace masked_mapper
