@@ -125,6 +125,14 @@ class FieldReader {
   FieldReader(const Field& field, bool is_bigendian)
       : offset_(field.offset), type_(field.type), swapped_(is_bigendian) {}
 
+  /// As nearly all clouds have their coordinates.
+  bool IsFloat() const { return type_ == 7 && !swapped_; }
+  float FloatAt(const unsigned char* point) const {
+    float value = 0.0F;
+    std::memcpy(&value, point + offset_, sizeof(value));
+    return value;
+  }
+
   double At(const unsigned char* point) const {
     const unsigned char* bytes = point + offset_;
     switch (type_) {
@@ -218,12 +226,19 @@ std::optional<RosPointCloud> ParsePointCloud(const unsigned char* data, std::siz
 
   RosPointCloud cloud;
   cloud.header = message.header;
+  cloud.points.reserve(message.height * message.width);
+  const bool are_floats = x.IsFloat() && y.IsFloat() && z.IsFloat();
   std::vector<double> times;
+  if (time) times.reserve(message.height * message.width);
   for (std::uint64_t row = 0; row < message.height; ++row) {
     const unsigned char* point = message.data.data + row * message.row_step;
     for (std::uint64_t i = 0; i < message.width; ++i, point += message.point_step) {
       CloudPoint read;
-      read.position = Eigen::Vector3d(x.At(point), y.At(point), z.At(point)).cast<float>();
+      if (are_floats) {
+        read.position = {x.FloatAt(point), y.FloatAt(point), z.FloatAt(point)};
+      } else {
+        read.position = Eigen::Vector3d(x.At(point), y.At(point), z.At(point)).cast<float>();
+      }
       const float reach = read.position.cwiseAbs().maxCoeff();
       if (!read.position.allFinite() || !(reach > 0.0F) || reach > kFarthest) continue;
       if (intensity) read.intensity = static_cast<float>(intensity->At(point));

@@ -29,11 +29,13 @@ void Straighten(const std::function<Pose2(double)>& motion, CloudPoints* points_
   for (std::size_t i = 0; i <= kStepsOfSweep; ++i) {
     steps.push_back(motion(begin + span * static_cast<double>(i) / kStepsOfSweep));
   }
-  std::vector<Eigen::Rotation2Df> rotations;
-  for (const Pose2& step : steps) rotations.emplace_back(static_cast<float>(step.theta));
+  std::vector<Eigen::Matrix2f> rotations;
+  for (const Pose2& step : steps) {
+    rotations.push_back(Eigen::Rotation2Df(static_cast<float>(step.theta)).toRotationMatrix());
+  }
   for (CloudPoint& point : *points_in_robot) {
     const double share = (static_cast<double>(point.time) - begin) / span;
-    const auto i = static_cast<std::size_t>(std::lround(share * kStepsOfSweep));
+    const auto i = static_cast<std::size_t>(share * kStepsOfSweep + 0.5);
     const Eigen::Vector2f moved =
         rotations[i] * point.position.head<2>() + steps[i].Translation().cast<float>();
     point.position.head<2>() = moved;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "masked_mapper/geometry/angle.hpp"
@@ -41,8 +43,12 @@ std::vector<float> Directions(const CloudPoints& points, const Eigen::Vector3f& 
   return directions;
 }
 
+/// The beam nearest to a place that is counted in beams; the one behind the last is the first.
+std::size_t Nearest(float in_beams) { return static_cast<std::size_t>(in_beams + 0.5F); }
+
 std::size_t BeamOf(float direction, std::size_t beams) {
-  return static_cast<std::size_t>(std::lround(direction * static_cast<float>(beams))) % beams;
+  const std::size_t beam = Nearest(direction * static_cast<float>(beams));
+  return beam < beams ? beam : beam - beams;
 }
 
 /// The finest beams that the rays fill: enough in each, and none between two columns of the lidar.
@@ -96,7 +102,9 @@ class Beam {
     for (const Ray* ray = begin_; ray != end_; ++ray) {
       if (!InBand(ray->height) || ray->range < rejected) continue;
       const float thick = kThick + std::min(recedes, kFlattest * ray->range);
-      if (IsWall(ray->range, thick)) return At(ray->range, thick);
+      const Ray* first = ray;
+      while (first != begin_ && (first - 1)->range == ray->range) --first;
+      if (IsWall(first, thick)) return At(first, thick);
       rejected = ray->range + 0.25F * thick;
     }
     return kInvalidRange;
@@ -105,15 +113,16 @@ class Beam {
  private:
   bool InBand(float height) const { return height >= low_ && height <= high_; }
 
-  bool IsWall(float range, float thick) const {
+  /// Of the wall that begins with the ray `first`.
+  bool IsWall(const Ray* first, float thick) const {
+    const float range = first->range;
     // Returns up to two thicknesses behind the first are one wall.
     const float behind = range + 2.0F * thick;
     float lowest = kNoReturn;
     float highest = -kNoReturn;
     int stopped = 0;
     int passed = 0;
-    for (const Ray* ray = begin_; ray != end_; ++ray) {
-      if (ray->range < range) continue;
+    for (const Ray* ray = first; ray != end_; ++ray) {
       if (ray->range <= behind) {
         lowest = std::min(lowest, ray->height);
         highest = std::max(highest, ray->height);
@@ -130,14 +139,15 @@ class Beam {
 
   /// Where the middle of the beam meets the wall: along a straight wall 1 / range is linear in the
   /// direction.
-  float At(float range, float thick) const {
+  float At(const Ray* first, float thick) const {
     double n = 0.0;
     double x = 0.0;
     double y = 0.0;
     double xx = 0.0;
     double xy = 0.0;
-    for (const Ray* ray = begin_; ray != end_; ++ray) {
-      if (ray->range < range || ray->range > range + 2.0F * thick || !InBand(ray->height)) continue;
+    const float behind = first->range + 2.0F * thick;
+    for (const Ray* ray = first; ray != end_ && ray->range <= behind; ++ray) {
+      if (!InBand(ray->height)) continue;
       const double inverse = 1.0 / ray->range;
       n += 1.0;
       x += ray->offset;
@@ -169,7 +179,7 @@ class Sweep {
   Sweep(const CloudPoints& points, const Eigen::Vector3f& lidar,
         const std::vector<float>& directions, std::size_t beams)
       : begins_(beams + 1, 0) {
-    std::vector<std::size_t> beam_of;
+    std::vector<std::uint32_t> beam_of;
     std::vector<Ray> rays;
     beam_of.reserve(points.size());
     rays.reserve(points.size());
@@ -179,20 +189,13 @@ class Sweep {
       const Eigen::Vector3f& position = points[i].position;
       const float range = (position - lidar).head<2>().norm();
       const float in_beams = directions[i] * static_cast<float>(beams);
-      beam_of.push_back(BeamOf(directions[i], beams));
-      rays.push_back({range, position.z(), (in_beams - std::round(in_beams)) * step});
+      const std::size_t nearest = Nearest(in_beams);
+      beam_of.push_back(static_cast<std::uint32_t>(nearest < beams ? nearest : nearest - beams));
+      rays.push_back({range, position.z(), (in_beams - static_cast<float>(nearest)) * step});
       ++begins_[beam_of.back() + 1];
     }
     for (std::size_t beam = 0; beam < beams; ++beam) begins_[beam + 1] += begins_[beam];
-    rays_.resize(rays.size());
-    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
-    for (std::size_t i = 0; i < rays.size(); ++i) rays_[next[beam_of[i]]++] = rays[i];
-    for (std::size_t beam = 0; beam < beams; ++beam) {
-      std::sort(rays_.data() + begins_[beam], rays_.data() + begins_[beam + 1],
-                [](const Ray& a, const Ray& b) {
-                  return a.range != b.range ? a.range < b.range : a.height < b.height;
-                });
-    }
+    TakeSorted(rays, beam_of);
   }
 
   Beam At(std::size_t beam, float lidar_height, const WallBand& band) const {
@@ -200,6 +203,23 @@ class Sweep {
   }
 
  private:
+  void TakeSorted(const std::vector<Ray>& rays, const std::vector<std::uint32_t>& beam_of) {
+    // Ranges are never negative, so that their bits are in their order; of equal ones the ray that
+    // stands first in the cloud is first.
+    std::vector<std::uint64_t> keys(rays.size());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &rays[i].range, sizeof(bits));
+      keys[next[beam_of[i]]++] = std::uint64_t{bits} << 32U | i;
+    }
+    for (std::size_t beam = 0; beam + 1 < begins_.size(); ++beam) {
+      std::sort(keys.data() + begins_[beam], keys.data() + begins_[beam + 1]);
+    }
+    rays_.reserve(rays.size());
+    for (const std::uint64_t key : keys) rays_.push_back(rays[key & 0xffffffffU]);
+  }
+
   std::vector<std::size_t> begins_;
   std::vector<Ray> rays_;
 };

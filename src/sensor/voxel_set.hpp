@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +17,11 @@ class VoxelSet {
  public:
   /// For `most` insertions; voxels of `voxel_m` a side.
   VoxelSet(std::size_t most, double voxel_m) : voxel_(static_cast<float>(voxel_m)) {
-    std::size_t size = 16;
-    while (size < 2 * most) size *= 2;
-    cells_.assign(size, kEmpty);
+    while (cells_.size() < 2 * most) {
+      cells_.resize(2 * cells_.size());
+      --unused_bits_;
+    }
+    std::fill(cells_.begin(), cells_.end(), kEmpty);
   }
 
   /// False when the voxel is there already. Two points are of one voxel also when they are a
@@ -27,7 +30,8 @@ class VoxelSet {
     const std::uint64_t cell = CellOf(point);
     const std::size_t mask = cells_.size() - 1;
     constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
-    for (std::size_t i = (cell * kGolden >> 20) & mask;; i = (i + 1) & mask) {
+    // Only the uppermost bits of the product hang on all of the cell's.
+    for (std::size_t i = cell * kGolden >> unused_bits_;; i = (i + 1) & mask) {
       if (cells_[i] == cell) return false;
       if (cells_[i] != kEmpty) continue;
       cells_[i] = cell;
@@ -48,7 +52,8 @@ class VoxelSet {
 
   static constexpr std::uint64_t kEmpty = std::numeric_limits<std::uint64_t>::max();
   float voxel_;
-  std::vector<std::uint64_t> cells_;
+  unsigned unused_bits_ = 60;  ///< of 64, for the first 16 places
+  std::vector<std::uint64_t> cells_ = std::vector<std::uint64_t>(16);
 };
 
 }  // namespace masked_mapper
