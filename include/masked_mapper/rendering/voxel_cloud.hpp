@@ -4,10 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
+#include <deque>
 #include <vector>
 
 namespace masked_mapper {
@@ -34,18 +33,22 @@ class VoxelCloud {
   std::vector<SpacePoint> Points(std::uint32_t least) const;
 
  private:
+  // Of a large building there are tens of millions, so that their bytes count.
   struct Sum {
+    double stamp = 0.0;
+    std::uint64_t cell = 0;                            ///< its three indices in one
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< m, from the voxel's corner
     float intensity = 0.0F;
     std::uint32_t count = 0;
     std::uint32_t label = 0;
-    std::array<std::int32_t, 3> cell{};
-    double stamp = 0.0;
   };
 
+  Sum& SumOf(std::uint64_t cell, const SpacePoint& point);
+  void Grow();
+
   double voxel_m_;
-  std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> index_;  ///< by label
-  std::vector<Sum> sums_;
+  std::vector<std::uint32_t> places_;  ///< in `sums_`, one above, by the hash of cell and label
+  std::deque<Sum> sums_;
 };
 
 }  // namespace masked_mapper
