@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace masked_mapper {
 namespace {
 
-constexpr double kCell = 1.0;          // m, no shorter than a step of the way
+constexpr double kCell = 0.3;          // m
 constexpr double kLongestStep = 1.0;   // m between kept scans of one way
 constexpr double kFarthestWall = 5.0;  // m from the scanner: farther ones move with its heading
 constexpr double kWholeWall = 0.2;     // m between neighbouring hits of one wall
@@ -33,6 +34,7 @@ bool Cross(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::
   return on_way >= 0.0 && on_way < 1.0 && on_wall >= 0.0 && on_wall <= 1.0;
 }
 
+/// The steps of all ways, by the place: hits of a wall are many, and few lie where a robot drove.
 class Ways {
  public:
   explicit Ways(const std::vector<Visit>& visits) : visits_(visits) {
@@ -41,39 +43,71 @@ class Ways {
           Distance(visits[i].T_world_robot, visits[i - 1].T_world_robot) > kLongestStep) {
         continue;
       }
-      steps_[CellOf(visits[i].T_world_robot.Translation(), visits[i].floor)].push_back(i);
+      Enter(i);
     }
   }
 
-  /// Steps that cross from one point to another, each by its later end.
+  /// Steps that cross from one point to another, no farther than kWholeWall apart, each by its
+  /// later end.
   template <class Use>
   void ForEachThrough(const Eigen::Vector2d& one, const Eigen::Vector2d& other, FloorId floor,
                       Use use) const {
-    const auto middle = CellOf(0.5 * (one + other), floor);
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const auto cell = steps_.find({floor, std::get<1>(middle) + dx, std::get<2>(middle) + dy});
-        if (cell == steps_.end()) continue;
-        for (const std::size_t i : cell->second) {
-          if (Cross(visits_[i - 1].T_world_robot.Translation(),
-                    visits_[i].T_world_robot.Translation(), one, other)) {
-            use(i);
-          }
-        }
+    const auto cell = steps_.find(CellOf(0.5 * (one + other), floor));
+    if (cell == steps_.end()) return;
+    for (const std::size_t i : cell->second) {
+      if (Cross(visits_[i - 1].T_world_robot.Translation(), visits_[i].T_world_robot.Translation(),
+                one, other)) {
+        use(i);
       }
     }
   }
 
  private:
-  using Cell = std::tuple<FloorId, int, int>;
+  struct Cell {
+    FloorId floor;
+    int column, row;
+    bool operator==(const Cell& other) const {
+      return floor == other.floor && column == other.column && row == other.row;
+    }
+  };
+  struct HashOfCell {
+    std::size_t operator()(const Cell& cell) const {
+      const auto column = static_cast<std::uint32_t>(cell.column);
+      const auto row = static_cast<std::uint32_t>(cell.row);
+      std::uint64_t mixed = (std::uint64_t{column} << 32U | row) +
+                            0x9E3779B97F4A7C15U * static_cast<std::uint64_t>(cell.floor + 1);
+      mixed = (mixed ^ (mixed >> 29U)) * 0xBF58476D1CE4E5B9U;
+      return static_cast<std::size_t>(mixed ^ (mixed >> 32U));
+    }
+  };
 
   static Cell CellOf(const Eigen::Vector2d& point, FloorId floor) {
     return {floor, static_cast<int>(std::floor(point.x() / kCell)),
             static_cast<int>(std::floor(point.y() / kCell))};
   }
 
+  // Into every cell in which the middle of a piece of wall may lie that the step crosses.
+  void Enter(std::size_t i) {
+    constexpr double kSpacing = 0.1;
+    constexpr double kReach = 0.5 * (kWholeWall + kSpacing);
+    const Eigen::Vector2d from = visits_[i - 1].T_world_robot.Translation();
+    const Eigen::Vector2d way = visits_[i].T_world_robot.Translation() - from;
+    const int samples = static_cast<int>(std::ceil(way.norm() / kSpacing));
+    for (int sample = 0; sample <= samples; ++sample) {
+      const Eigen::Vector2d at = from + way * (static_cast<double>(sample) / std::max(1, samples));
+      const Cell first = CellOf(at.array() - kReach, visits_[i].floor);
+      const Cell last = CellOf(at.array() + kReach, visits_[i].floor);
+      for (int column = first.column; column <= last.column; ++column) {
+        for (int row = first.row; row <= last.row; ++row) {
+          std::vector<std::size_t>& steps = steps_[{first.floor, column, row}];
+          if (steps.empty() || steps.back() != i) steps.push_back(i);
+        }
+      }
+    }
+  }
+
   const std::vector<Visit>& visits_;
-  std::map<Cell, std::vector<std::size_t>> steps_;
+  std::unordered_map<Cell, std::vector<std::size_t>, HashOfCell> steps_;
 };
 
 /// Points of one scan in the world, in the order of its beams.
