@@ -5,8 +5,8 @@ namespace masked_mapper {
 
 CellSlots::CellSlots(int width)
     : width_(width),
-      tiles_((width + kTile - 1) / kTile),
-      tiles_at_(static_cast<std::size_t>(tiles_) * static_cast<std::size_t>(tiles_), -1) {}
+      tiles_((static_cast<std::size_t>(width) + kTile - 1) / kTile),
+      tiles_at_(tiles_ * tiles_, -1) {}
 
 std::size_t CellSlots::Use(Cell cell) {
   constexpr std::size_t kCellsOfTile = std::size_t{kTile} * kTile;

@@ -16,6 +16,7 @@ double Square(double value) { return value * value; }
 
 LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
     : options_(options),
+      cells_per_m_(1.0 / options.cell_m),
       slots_(2 * static_cast<int>(std::ceil(options.reach_m / options.cell_m)) + 1) {
   corner_ = center_in_map.array() - 0.5 * slots_.width() * options.cell_m;
 }
@@ -31,8 +32,8 @@ void LocalMap::Moments::operator+=(const Moments& other) {
 
 // A margin of a window is left out, so that neighbours need no check of their own.
 bool LocalMap::FindCell(double x, double y, Cell* cell) const {
-  const double column = (x - corner_.x()) / options_.cell_m;
-  const double row = (y - corner_.y()) / options_.cell_m;
+  const double column = (x - corner_.x()) * cells_per_m_;
+  const double row = (y - corner_.y()) * cells_per_m_;
   const double least = options_.window_cells;
   const double end = slots_.width() - options_.window_cells;
   if (!(column >= least && row >= least && column < end && row < end)) return false;
@@ -200,25 +201,40 @@ double LocalMap::Step(const FacedPoints& points, const std::vector<std::uint8_t>
     const double ny = d.normal_y;
     const double across = nx * ex + ny * ey;
     const double w_across = 1.0 / (d.small + noise);
-    const double along = -ny * ex + nx * ey;
-    const double w_along = d.is_line ? 0.0 : 1.0 / (d.large + noise);
+    // d(point)/d(x, y, theta) = [1 0 -ry; 0 1 rx], projected on the normal and on the tangent.
+    const double turn_across = ny * rx - nx * ry;
+    if (d.is_line) {
+      const double weight = 1.0 / Square(1.0 + w_across * across * across * outlier);
+      inliers += weight;
+      const double wa = weight * w_across;
+      h00 += wa * nx * nx;
+      h01 += wa * nx * ny;
+      h02 += wa * nx * turn_across;
+      h11 += wa * ny * ny;
+      h12 += wa * ny * turn_across;
+      h22 += wa * turn_across * turn_across;
+      g0 += wa * nx * across;
+      g1 += wa * ny * across;
+      g2 += wa * turn_across * across;
+      continue;
+    }
+    const double along = nx * ey - ny * ex;
+    const double w_along = 1.0 / (d.large + noise);
     const double chi2 = w_across * across * across + w_along * along * along;
     const double weight = 1.0 / Square(1.0 + chi2 * outlier);
     inliers += weight;
-    // d(point)/d(x, y, theta) = [1 0 -ry; 0 1 rx], projected on the normal and on the tangent.
-    const double a2 = -nx * ry + ny * rx;
-    const double b2 = ny * ry + nx * rx;
+    const double turn_along = ny * ry + nx * rx;
     const double wa = weight * w_across;
     const double wb = weight * w_along;
     h00 += wa * nx * nx + wb * ny * ny;
     h01 += wa * nx * ny - wb * ny * nx;
-    h02 += wa * nx * a2 - wb * ny * b2;
+    h02 += wa * nx * turn_across - wb * ny * turn_along;
     h11 += wa * ny * ny + wb * nx * nx;
-    h12 += wa * ny * a2 + wb * nx * b2;
-    h22 += wa * a2 * a2 + wb * b2 * b2;
+    h12 += wa * ny * turn_across + wb * nx * turn_along;
+    h22 += wa * turn_across * turn_across + wb * turn_along * turn_along;
     g0 += wa * nx * across - wb * ny * along;
     g1 += wa * ny * across + wb * nx * along;
-    g2 += wa * a2 * across + wb * b2 * along;
+    g2 += wa * turn_across * across + wb * turn_along * along;
   }
   hessian << h00, h01, h02, h01, h11, h12, h02, h12, h22;
   gradient << g0, g1, g2;

@@ -46,18 +46,21 @@ class CellSlots {
   bool Take(const std::vector<std::int32_t>& cells);
 
  private:
-  static constexpr int kTile = 8;  ///< cells to a side of a tile
+  static constexpr unsigned kTile = 8;  ///< cells to a side of a tile
 
+  // Divided as unsigned numbers, by shifts.
   std::size_t TileOf(Cell cell) const {
-    return static_cast<std::size_t>(cell.row / kTile * tiles_ + cell.column / kTile);
+    return static_cast<std::size_t>(static_cast<unsigned>(cell.row) / kTile) * tiles_ +
+           static_cast<unsigned>(cell.column) / kTile;
   }
   static std::size_t IndexOf(std::int32_t tile, Cell cell) {
-    return static_cast<std::size_t>((tile * kTile + cell.row % kTile) * kTile +
-                                    cell.column % kTile);
+    return (static_cast<std::size_t>(tile) * kTile + static_cast<unsigned>(cell.row) % kTile) *
+               kTile +
+           static_cast<unsigned>(cell.column) % kTile;
   }
 
   int width_;
-  int tiles_;                           ///< to a side of the grid
+  std::size_t tiles_;                   ///< to a side of the grid
   std::vector<std::int32_t> tiles_at_;  ///< row by row; -1: nothing in use
   std::vector<std::int32_t> slots_;     ///< of each tile, row by row; -1: not in use
   std::vector<std::int32_t> cell_of_slot_;

@@ -125,6 +125,7 @@ class LocalMap {
               Eigen::Vector3d& gradient) const;
 
   LocalMapOptions options_;
+  double cells_per_m_;
   double front_rad_ = 0.0;  ///< surfaces that face within 90 deg of it are in front
   Eigen::Vector2d corner_;  ///< of cell (0, 0), in map
   CellSlots slots_;
