@@ -196,7 +196,7 @@ class MapWriter {
     for (std::size_t i = 0; i < grids_.size(); ++i) {
       layers.push_back({&grids_[i], floors()[i].elevation});
     }
-    WriteOctomap(*BuildOctree(layers, options_.octree), folder_ / "building.bt");
+    WriteOctomap(BuildOctree(layers, options_.octree), folder_ / "building.bt");
   }
 
   /// And gives their walls, all together.

@@ -4,13 +4,11 @@
 
 #include <filesystem>
 
-namespace octomap {
-class OcTree;
-}
+#include "masked_mapper/rendering/octree.hpp"
 
 namespace masked_mapper {
 
 /// Throws std::runtime_error when the file cannot be written.
-void WriteOctomap(const octomap::OcTree& tree, const std::filesystem::path& path);
+void WriteOctomap(const OctreeData& tree, const std::filesystem::path& path);
 
 }  // namespace masked_mapper

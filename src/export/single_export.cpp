@@ -50,7 +50,7 @@ void WriteTree(const BuildingMap& result, const std::vector<FloorGrid>& grids,
     layers.push_back(
         {&grid.grid, result.graph.floors()[static_cast<std::size_t>(grid.floor)].elevation});
   }
-  WriteOctomap(*BuildOctree(layers, options, heights), path);
+  WriteOctomap(BuildOctree(layers, options, heights), path);
 }
 
 std::vector<PlanLayer> PlanLayers(const std::vector<FloorGrid>& grids) {

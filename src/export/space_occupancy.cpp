@@ -88,7 +88,7 @@ bool SpaceOccupancy::Finish() {
 void SpaceOccupancy::WriteOctree(const std::filesystem::path& path) const {
   std::vector<const SpaceStates*> states;
   for (const FloorVotes& floor : floors_) states.push_back(&floor.states);
-  WriteOctomap(*BuildSpaceOctree(states, options_.heights), path);
+  WriteOctomap(BuildSpaceOctree(states, options_.heights), path);
 }
 
 void SpaceOccupancy::WriteGrid(FloorId floor, const RobotHeights& heights,

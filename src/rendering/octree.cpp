@@ -7,7 +7,9 @@
 #endif
 #include <octomap/octomap.h>
 
+#include <array>
 #include <cassert>
+#include <sstream>
 
 #include "floor_volume.hpp"
 #include "space_volume.hpp"
@@ -15,78 +17,93 @@
 namespace masked_mapper {
 namespace {
 
-// OctoMap offers no way to make the root alone.
-class RootedTree : public octomap::OcTree {
- public:
-  using octomap::OcTree::OcTree;
+// Two bits of a node in its parent's bytes.
+enum class Node : unsigned { kUnknown = 0, kFree = 1, kOccupied = 2, kInner = 3 };
 
-  octomap::OcTreeNode* MakeRoot() {
-    assert(root == nullptr);
-    root = new octomap::OcTreeNode();
-    ++tree_size;
-    size_changed = true;
-    return root;
+// Goes through the tree from the top, so that what is alike is one node from the start, and appends
+// the bytes of a node before those of its children, as the format wants them: the tree itself is
+// never there, which would take a hundred times as much as its file.
+class TreeWriter {
+ public:
+  TreeWriter(const std::vector<std::unique_ptr<Volume>>& floors, OctreeData* tree) : tree_(tree) {
+    for (const std::unique_ptr<Volume>& floor : floors) known_[kTreeDepth].push_back(floor.get());
   }
-};
 
-// Fills the tree from the top, so that what is alike is one node from the start.
-class TreeBuilder {
- public:
-  TreeBuilder(const std::vector<std::unique_ptr<Volume>>& floors, RootedTree* tree)
-      : floors_(floors), tree_(tree) {}
-
-  void Build() {
+  void Write() {
     const Block all{{}, kTreeDepth};
-    const States states = At(all);
-    if (states != kUnknownBit) Fill(tree_->MakeRoot(), all, states);
+    if (At(all, known_[kTreeDepth]) == kUnknownBit) return;
+    tree_->nodes = 1;
+    WriteChildren(all);
   }
 
  private:
-  // Floors that know nothing of the block have no say in it.
-  States At(const Block& block) const {
+  using Volumes = std::vector<const Volume*>;
+
+  // Floors that know nothing of the block have no say in it, nor in its parts.
+  States At(const Block& block, const Volumes& floors) {
+    Volumes& known = known_[static_cast<std::size_t>(block.level)];
+    if (&known != &floors) known.clear();
     States states = 0;
-    for (const std::unique_ptr<Volume>& floor : floors_) {
+    for (const Volume* floor : floors) {
       const States of_floor = floor->At(block);
-      if (of_floor != kUnknownBit) states |= of_floor;
+      if (of_floor == kUnknownBit) continue;
+      states |= of_floor;
+      if (&known != &floors) known.push_back(floor);
     }
     if (states == 0) return kUnknownBit;
     if (block.level > 0) return states;
     return states & kOccupiedBit ? kOccupiedBit : kFreeBit;
   }
 
-  void Fill(octomap::OcTreeNode* node, const Block& block, States states) {
-    if (states == kOccupiedBit) {
-      node->setLogOdds(tree_->getClampingThresMaxLog());
-    } else if (states == kFreeBit) {
-      node->setLogOdds(tree_->getClampingThresMinLog());
-    } else {
-      FillChildren(node, block);
-    }
+  Node Write(const Block& block, States states) {
+    if (states == kUnknownBit) return Node::kUnknown;
+    ++tree_->nodes;
+    if (states == kOccupiedBit) return Node::kOccupied;
+    if (states == kFreeBit) return Node::kFree;
+    return WriteChildren(block);
   }
 
-  void FillChildren(octomap::OcTreeNode* node, const Block& block) {
+  Node WriteChildren(const Block& block) {
+    const std::size_t begin = tree_->bytes.size();
+    tree_->bytes.append(2, '\0');
+    const Volumes& known = known_[static_cast<std::size_t>(block.level)];
     const int half = 1 << (block.level - 1);
-    for (unsigned int child = 0; child < 8; ++child) {
+    unsigned bits = 0;
+    for (unsigned child = 0; child < 8; ++child) {
       Block part{block.key, block.level - 1};
-      for (unsigned int axis = 0; axis < 3; ++axis) {
+      for (unsigned axis = 0; axis < 3; ++axis) {
         if (child >> axis & 1U) part.key[axis] += half;
       }
-      const States states = At(part);
-      if (states != kUnknownBit) Fill(tree_->createNodeChild(node, child), part, states);
+      bits |= static_cast<unsigned>(Write(part, At(part, known))) << (2 * child);
     }
-    // Where floors overlap, a block may look mixed and yet come out uniform.
-    if (!tree_->pruneNode(node)) node->updateOccupancyChildren();
+    // Where floors overlap, a block may look mixed and yet come out uniform: then it has no bytes
+    // of its own, nor had its children any.
+    for (const Node uniform : {Node::kFree, Node::kOccupied}) {
+      if (bits != 0x5555U * static_cast<unsigned>(uniform)) continue;
+      tree_->bytes.resize(begin);
+      tree_->nodes -= 8;
+      return uniform;
+    }
+    tree_->bytes[begin] = static_cast<char>(bits & 0xFFU);
+    tree_->bytes[begin + 1] = static_cast<char>(bits >> 8U);
+    return Node::kInner;
   }
 
-  const std::vector<std::unique_ptr<Volume>>& floors_;
-  RootedTree* tree_;
+  std::array<Volumes, kTreeDepth + 1> known_;  ///< of the block at hand of each level
+  OctreeData* tree_;
 };
+
+OctreeData TreeOf(const std::vector<std::unique_ptr<Volume>>& floors, double resolution_m) {
+  OctreeData tree;
+  tree.resolution_m = resolution_m;
+  TreeWriter(floors, &tree).Write();
+  return tree;
+}
 
 }  // namespace
 
-std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
-                                             const OctreeOptions& options,
-                                             const HeightBand& heights) {
+OctreeData BuildOctree(const std::vector<FloorLayer>& floors, const OctreeOptions& options,
+                       const HeightBand& heights) {
   assert(options.wall_height_m > 0.0 && options.free_height_m > 0.0);
   double resolution = GridOptions().resolution_m;
   std::vector<std::unique_ptr<Volume>> volumes;
@@ -96,13 +113,11 @@ std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floo
     resolution = floor.grid->resolution_m;
     volumes.push_back(VolumeOf(floor, options, heights));
   }
-  auto tree = std::make_shared<RootedTree>(resolution);
-  TreeBuilder(volumes, tree.get()).Build();
-  return tree;
+  return TreeOf(volumes, resolution);
 }
 
-std::shared_ptr<octomap::OcTree> BuildSpaceOctree(const std::vector<const SpaceStates*>& floors,
-                                                  const HeightBand& heights) {
+OctreeData BuildSpaceOctree(const std::vector<const SpaceStates*>& floors,
+                            const HeightBand& heights) {
   double resolution = GridOptions().resolution_m;
   std::vector<std::unique_ptr<Volume>> volumes;
   for (const SpaceStates* floor : floors) {
@@ -111,8 +126,14 @@ std::shared_ptr<octomap::OcTree> BuildSpaceOctree(const std::vector<const SpaceS
     resolution = floor->resolution_m();
     volumes.push_back(VolumeOf(*floor, heights));
   }
-  auto tree = std::make_shared<RootedTree>(resolution);
-  TreeBuilder(volumes, tree.get()).Build();
+  return TreeOf(volumes, resolution);
+}
+
+std::shared_ptr<octomap::OcTree> OcTreeOf(const OctreeData& data) {
+  auto tree = std::make_shared<octomap::OcTree>(data.resolution_m);
+  std::istringstream bytes(data.bytes);
+  if (data.nodes > 0) tree->readBinaryData(bytes);
+  assert(tree->size() == data.nodes);
   return tree;
 }
 

@@ -11,19 +11,21 @@
 namespace masked_mapper {
 namespace {
 
-octomap::point3d PointOf(int i) { return {0.1F * static_cast<float>(i), 1.0F, 2.0F}; }
-
 TEST(OctomapFile, OctomapReadsTheSameTree) {
-  octomap::OcTree tree(0.05);
-  for (int i = 0; i < 40; ++i) tree.updateNode(PointOf(i), i % 3 == 0);
+  OccupancyGrid grid;
+  grid.width = 40;
+  grid.height = 3;
+  for (int i = 0; i < 120; ++i) grid.cells.push_back(i % 3 == 0 ? Cell::kOccupied : Cell::kFree);
+  const OctreeData tree = BuildOctree({{&grid, 0.0}}, {});
   const TestFolder folder;
   WriteOctomap(tree, folder / "tree.bt");
   octomap::OcTree read(1.0);
   ASSERT_TRUE(read.readBinary((folder / "tree.bt").string()));
-  EXPECT_EQ(read.getResolution(), 0.05);
-  EXPECT_EQ(read.size(), tree.size());
-  for (int i = 0; i < 40; ++i) {
-    const auto* node = read.search(PointOf(i));
+  EXPECT_EQ(read.getResolution(), grid.resolution_m);
+  EXPECT_EQ(read.size(), tree.nodes);
+  for (int i = 0; i < 120; ++i) {
+    const auto* node = read.search((i % 40 + 0.5) * grid.resolution_m,
+                                   (i / 40 + 0.5) * grid.resolution_m, 0.5 * grid.resolution_m);
     ASSERT_NE(node, nullptr);
     EXPECT_EQ(read.isNodeOccupied(node), i % 3 == 0);
   }
@@ -31,7 +33,7 @@ TEST(OctomapFile, OctomapReadsTheSameTree) {
 
 TEST(OctomapFile, EmptyTreeIsAFileToo) {
   const TestFolder folder;
-  WriteOctomap(octomap::OcTree(0.1), folder / "tree.bt");
+  WriteOctomap(BuildOctree({}, {}), folder / "tree.bt");
   octomap::OcTree read(1.0);
   EXPECT_TRUE(read.readBinary((folder / "tree.bt").string()));
   EXPECT_EQ(read.size(), 0U);
@@ -39,7 +41,7 @@ TEST(OctomapFile, EmptyTreeIsAFileToo) {
 
 TEST(OctomapFile, FullDiskIsNoticed) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  EXPECT_THROW(WriteOctomap(octomap::OcTree(0.1), "/dev/full"), std::runtime_error);
+  EXPECT_THROW(WriteOctomap(BuildOctree({}, {}), "/dev/full"), std::runtime_error);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,8 @@ TEST(BuildOctree, EqualsTheTreeFilledVoxelByVoxel) {
     const OccupancyGrid second = RandomGrid(&random);
     const double above = 0.05 * static_cast<double>(random() % 20) - 0.5;  // often overlapping
     const std::vector<FloorLayer> floors{{&first, 0.3}, {&second, above}};
-    const auto tree = BuildOctree(floors, options);
+    const OctreeData data = BuildOctree(floors, options);
+    const auto tree = OcTreeOf(data);
 
     octomap::OcTree plain(0.05);
     for (int x = -75; x < 85; ++x) {
@@ -104,8 +106,10 @@ TEST(BuildOctree, EqualsTheTreeFilledVoxelByVoxel) {
     plain.prune();
     EXPECT_TRUE(*tree == plain) << "trial " << trial << ": " << tree->size() << " nodes, expected "
                                 << plain.size();
-    EXPECT_EQ(tree->size(), plain.size());
-    EXPECT_EQ(tree->size(), tree->calcNumNodes());
+    EXPECT_EQ(data.nodes, plain.size());
+    std::ostringstream bytes;
+    plain.writeBinaryData(bytes);
+    EXPECT_TRUE(data.bytes == bytes.str()) << "trial " << trial;
   }
 }
 
@@ -114,7 +118,7 @@ TEST(BuildOctree, LooksUpAsTheGrid) {
   for (int x = 0; x < 50; ++x) grid.cells[static_cast<std::size_t>(x)] = Cell::kOccupied;
   grid.cells[77] = Cell::kUnknown;
   const double elevation = 3.7;
-  const auto tree = BuildOctree({{&grid, elevation}}, {});
+  const auto tree = OcTreeOf(BuildOctree({{&grid, elevation}}, {}));
   // 3.7 m is voxel 74; the next multiple of 16 is 80.
   for (int row = -2; row < 32; ++row) {
     for (int column = -2; column < 52; ++column) {
@@ -135,8 +139,8 @@ TEST(BuildOctree, AlignedSlabPrunesWhatOneLayerCannot) {
   const OccupancyGrid floor = GridOf(-320, -320, 640, 640, Cell::kFree);  // 32 x 32 m
   OctreeOptions layer;
   layer.free_height_m = 0.05;
-  const std::size_t one_layer = BuildOctree({{&floor, 0.0}}, layer)->size();
-  const std::size_t slab = BuildOctree({{&floor, 0.0}}, {})->size();
+  const std::size_t one_layer = BuildOctree({{&floor, 0.0}}, layer).nodes;
+  const std::size_t slab = BuildOctree({{&floor, 0.0}}, {}).nodes;
   EXPECT_GT(one_layer, 500000U);
   EXPECT_LT(slab, 2500U);
 }
@@ -146,11 +150,11 @@ TEST(BuildOctree, HeightsLeaveOutWhatIsOutside) {
   const OccupancyGrid lower = RandomGrid(&random);
   const OccupancyGrid upper = RandomGrid(&random);
   const std::vector<FloorLayer> floors = {{&lower, 0.0}, {&upper, 1.0}};
-  const auto whole = BuildOctree(floors, {});
+  const auto whole = OcTreeOf(BuildOctree(floors, {}));
   const double resolution = lower.resolution_m;
   for (const HeightBand& heights : {HeightBand{0.31, 1.24}, HeightBand{-9.0, 0.5},
                                     HeightBand{1.0, 9.0}, HeightBand{0.9, 0.9}}) {
-    const auto cut = BuildOctree(floors, {}, heights);
+    const auto cut = OcTreeOf(BuildOctree(floors, {}, heights));
     for (int i = 0; i < 20000; ++i) {
       const int x = static_cast<int>(random() % 160) - 80;
       const int y = static_cast<int>(random() % 160) - 80;
@@ -166,13 +170,13 @@ TEST(BuildOctree, HeightsLeaveOutWhatIsOutside) {
 TEST(BuildOctree, NothingGivesAnEmptyTree) {
   const OccupancyGrid empty;
   const OccupancyGrid unknown = GridOf(0, 0, 3, 4, Cell::kUnknown);
-  EXPECT_EQ(BuildOctree({}, {})->size(), 0U);
-  EXPECT_EQ(BuildOctree({{&empty, 0.0}, {&unknown, 3.0}}, {})->size(), 0U);
+  EXPECT_EQ(BuildOctree({}, {}).nodes, 0U);
+  EXPECT_EQ(BuildOctree({{&empty, 0.0}, {&unknown, 3.0}}, {}).nodes, 0U);
 }
 
 TEST(BuildOctree, BuildingBeyondTheKeysIsRefused) {
   const OccupancyGrid last = GridOf(32767, -32768, 1, 1, Cell::kFree);
-  EXPECT_GT(BuildOctree({{&last, 0.0}}, {})->size(), 0U);
+  EXPECT_GT(BuildOctree({{&last, 0.0}}, {}).nodes, 0U);
   const OccupancyGrid beyond = GridOf(32767, 0, 2, 1, Cell::kFree);
   EXPECT_THROW(BuildOctree({{&beyond, 0.0}}, {}), InputError);
   EXPECT_THROW(BuildOctree({{&last, 1700.0}}, {}), InputError);
@@ -199,7 +203,7 @@ TEST(Octree, OfStatesInSpaceIsWhatTheyAre) {
   blocks[1].cells.fill(Cell::kOccupied);
   const SpaceStates states(0.05, blocks);
   const HeightBand heights{-0.1, 1.0};
-  const auto tree = BuildSpaceOctree({&states}, heights);
+  const auto tree = OcTreeOf(BuildSpaceOctree({&states}, heights));
   for (int z = -2; z < 34; ++z) {
     for (int y = -34; y < 18; ++y) {
       for (int x = -18; x < 66; ++x) {

@@ -5,8 +5,10 @@
 // cubes.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "masked_mapper/rendering/occupancy_grid.hpp"
@@ -39,20 +41,29 @@ struct HeightBand {
   bool operator!=(const HeightBand& other) const { return !(*this == other); }
 };
 
-/// A pruned tree whose voxels are the grids' cells: an occupied cell is a wall column that starts
+/// A pruned tree as OctoMap's binary files hold it: unknown, free or occupied.
+struct OctreeData {
+  double resolution_m = 0.0;
+  std::size_t nodes = 0;
+  std::string bytes;  ///< of the nodes with children: two bits for each child, depth first
+};
+
+/// The tree itself, of about a hundred times the size.
+std::shared_ptr<octomap::OcTree> OcTreeOf(const OctreeData& data);
+
+/// A tree whose voxels are the grids' cells: an occupied cell is a wall column that starts
 /// at the floor's elevation; a free cell is free in the first aligned slab at or above it (so less
 /// than `free_height_m` above it; inside the walls' height as long as walls are twice as high as
 /// the slab). Where floors overlap, a wall of one outvotes the free space of another. All grids
 /// have one resolution; empty ones are ignored. Throws InputError when the building reaches beyond
 /// what the tree's 16-bit keys can address (32768 voxels from the origin). Voxels with their middle
 /// outside `heights` are left out.
-std::shared_ptr<octomap::OcTree> BuildOctree(const std::vector<FloorLayer>& floors,
-                                             const OctreeOptions& options,
-                                             const HeightBand& heights = {});
+OctreeData BuildOctree(const std::vector<FloorLayer>& floors, const OctreeOptions& options,
+                       const HeightBand& heights = {});
 
 /// The same of what 3D lidars saw: each voxel as it is. Where floors overlap, an occupied voxel of
 /// one outvotes a free one of another. All have one resolution. Throws as above.
-std::shared_ptr<octomap::OcTree> BuildSpaceOctree(const std::vector<const SpaceStates*>& floors,
-                                                  const HeightBand& heights = {});
+OctreeData BuildSpaceOctree(const std::vector<const SpaceStates*>& floors,
+                            const HeightBand& heights = {});
 
 }  // namespace masked_mapper
