@@ -2,20 +2,24 @@
 // masked_mapper route OUT|MAP --from PLACE --to PLACE
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "aside_folder.hpp"
 #include "commands.hpp"
 #include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/map_export.hpp"
+#include "masked_mapper/export/route_report.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/routing/route.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "run_description.hpp"
 #include "saved_map_path.hpp"
 
 namespace masked_mapper {
@@ -28,6 +32,7 @@ struct RouteArguments {
   std::string from;
   std::string to;
   std::string edits;
+  std::string report;
   RouteOptions options;
   bool without_stairs = false;
   bool json = false;
@@ -116,7 +121,26 @@ void PrintTable(const BuildingMap& map, const Route& route, const Place& asked_t
   }
 }
 
+/// A file of a user's that is no report is not replaced.
+void CheckReport(const std::filesystem::path& file) {
+  if (!file.has_filename()) throw InputError(file.string() + ": not the name of a file");
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
+    throw InputError(file.string() + " exists and is not a file");
+  }
+}
+
+void WriteReport(const SavedMap& map, const std::vector<OccupancyGrid>& grids, const Route& route,
+                 const std::string& path) {
+  const std::filesystem::path file = std::filesystem::absolute(path);
+  const AsideFolder aside(file);
+  const std::filesystem::path written = aside.path() / file.filename();
+  WriteRouteReport(map.result, DescriptionOf(map.origin, map.result), grids,
+                   map.origin.options.grid.max_usable_range_m, route, written);
+  std::filesystem::rename(written, file);
+}
+
 int RunRoute(const RouteArguments& arguments) {
+  if (!arguments.report.empty()) CheckReport(std::filesystem::absolute(arguments.report));
   SavedMap map = ReadMapFile(MapFileOf(arguments.map));
   for (const std::string& line : map.left_aside) {
     if (!arguments.quiet) std::cerr << "warning: " << arguments.map << ": " << line << "\n";
@@ -131,6 +155,9 @@ int RunRoute(const RouteArguments& arguments) {
   SettleThreads(map.origin.options);
   const std::vector<OccupancyGrid> grids = RenderFloors(map.result, map.origin.options.grid);
   const Route route = FindRoute(map.result, grids, from, to, options);
+  if (!arguments.report.empty() && route.is_found) {
+    WriteReport(map, grids, route, arguments.report);
+  }
   (arguments.json ? PrintJson : PrintTable)(map.result, route, to);
   return 0;
 }
@@ -166,6 +193,10 @@ void AddFlags(CLI::App* command, RouteArguments* arguments) {
       ->add_option("--edits", arguments->edits,
                    "mend the map as this file says first (docs/map_file.md)")
       ->type_name("FILE");
+  command
+      ->add_option("--report", arguments->report,
+                   "where there is a way, the map's page with it drawn in; one there is replaced")
+      ->type_name("FILE");
   command->add_flag("--json", arguments->json, "as JSON, for programs");
   command->add_flag("--quiet", arguments->quiet, "print errors and the result only");
 }
@@ -184,7 +215,8 @@ void AddRouteCommand(CLI::App& program, Run& run) {
       "Examples:\n"
       "  masked_mapper route out --from 0,1.5,2 --to 3,40,-7.5\n"
       "  masked_mapper route out --from=-1,3,4 --to t=1500000123.4 --radius 0.4\n"
-      "  masked_mapper route out --from dock --to printer --json");
+      "  masked_mapper route out --from dock --to printer --json\n"
+      "  masked_mapper route out --from 0,1.5,2 --to 3,40,-7.5 --report way.html");
   command->callback([arguments, &run] { run = [arguments] { return RunRoute(*arguments); }; });
 }
 

@@ -98,6 +98,18 @@ Json ClosuresJson(const std::vector<Closure>& closures, const PoseGraph& graph) 
           {"match_f32", Base64(match)}, {"quality_f32", Base64(quality)}};
 }
 
+Json RouteJson(const Route& route) {
+  Json legs = Json::array();
+  for (const RouteLeg& leg : route.legs) {
+    Json points = Json::array();
+    for (const Eigen::Vector2d& point : leg.points_in_world) {
+      points.push_back({point.x(), point.y()});
+    }
+    legs.push_back({{"floor", leg.floor}, {"points", std::move(points)}});
+  }
+  return {{"length_m", route.length_m}, {"legs", std::move(legs)}};
+}
+
 // Inside a <script> element only `<` can end it or open a comment; in JSON it may be written so.
 std::string SafeInScript(const std::string& json) {
   std::string safe;
@@ -115,17 +127,18 @@ std::string SafeInScript(const std::string& json) {
 }  // namespace
 
 std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGrid>& grids,
-                       double max_range_m) {
+                       double max_range_m, const Route* route) {
   assert(grids.size() == result.graph.floors().size());
   const Pose2 T_world_odom = WorldFromOdometry(result);
   const std::vector<Node>& nodes = result.graph.nodes();
-  const Json json = {{"version", 1},
-                     {"floors", FloorsJson(result.graph, grids)},
-                     {"scans", ScansJson(result, T_world_odom, max_range_m)},
-                     {"trajectory", TrajectoryJson(result, T_world_odom)},
-                     {"nodes", NodesJson(nodes, T_world_odom)},
-                     {"edges", EdgesJson(result.graph.edges())},
-                     {"attempts", ClosuresJson(result.closures, result.graph)}};
+  Json json = {{"version", 1},
+               {"floors", FloorsJson(result.graph, grids)},
+               {"scans", ScansJson(result, T_world_odom, max_range_m)},
+               {"trajectory", TrajectoryJson(result, T_world_odom)},
+               {"nodes", NodesJson(nodes, T_world_odom)},
+               {"edges", EdgesJson(result.graph.edges())},
+               {"attempts", ClosuresJson(result.closures, result.graph)}};
+  if (route != nullptr) json["route"] = RouteJson(*route);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -10,6 +10,7 @@
 #include "masked_mapper/export/summary_file.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/routing/route.hpp"
 
 namespace masked_mapper {
 
@@ -18,9 +19,10 @@ namespace masked_mapper {
 /// pose before (the motion path, placed so that it starts where the map does) and after
 /// optimisation. Long columns are base64 of little-endian numbers; viewer/src/data.js reads them.
 /// However large the building, walls, free space, scans and trajectory are thinned so that the page
-/// stays below 20 MB. Nothing in it depends on time or threads.
+/// stays below 20 MB. Nothing in it depends on time or threads. A `route` is drawn into the map;
+/// null: none.
 std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGrid>& grids,
-                       double max_range_m);
+                       double max_range_m, const Route* route = nullptr);
 
 /// The page of `data` (of ReportData) and the summary, which holds all that differs between two
 /// runs: `summary.seconds` and `summary.peak_memory_mib`.

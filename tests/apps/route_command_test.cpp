@@ -51,6 +51,19 @@ TEST_F(RouteCommand, FindsAWayBetweenPlacesHoweverNamed) {
   EXPECT_TRUE(Contains(table.out, "floor -1")) << table.out;
 }
 
+TEST_F(RouteCommand, TheReportShowsTheWay) {
+  const std::string out = folder_ / "out";
+  const std::string page = folder_ / "way.html";
+  const Ran ran = RunProgram({"route", out, "--from=-1,0,0", "--to=-1,3,0", "--report", page});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(Contains(ReadText(page), "\"route\":{\"length_m\":"));
+  const std::string none = folder_ / "none.html";
+  EXPECT_EQ(RunProgram({"route", out, "--from=-1,0,0", "--to=-1,500,0", "--report", none}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(none));
+  ExpectUsersFault(folder_, {"route", out, "--from=-1,0,0", "--to=-1,3,0", "--report", out},
+                   "is not a file");
+}
+
 TEST_F(RouteCommand, NoWayIsAnAnswer) {
   const nlohmann::json none = Route("start", "-1,500,0");
   EXPECT_FALSE(none.at("found").get<bool>());

@@ -114,6 +114,7 @@ export function readReport(text) {
   return {
     floors, nodes, edges, scans, trajectory, start, summary,
     attempts: readAttempts(map.attempts, nodes),
+    route: map.route ?? null,
     doubts: (summary.doubts ?? []).map((doubt) => (
       {...doubt, floor: Math.max(0, floors.findIndex(({label}) => label === doubt.floor))})),
   };

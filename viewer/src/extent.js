@@ -47,5 +47,11 @@ export function centre(model) {
     doubt.x -= origin.x;
     doubt.y -= origin.y;
   }
+  for (const {points} of model.route?.legs ?? []) {
+    for (const point of points) {
+      point[0] -= origin.x;
+      point[1] -= origin.y;
+    }
+  }
   return {origin, extent: Math.max(size.x, size.y, 5), course: longAxis(nodes)};
 }

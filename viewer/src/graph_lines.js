@@ -5,7 +5,10 @@ import {closureStates} from './states.js';
 // Heights above the floor at which things are drawn, so that none hides in another.
 const kTrajectoryHeight = 0.1;
 export const kGraphHeight = 0.25;
+const kRouteHeight = 0.28;
 const kHighlightHeight = 0.3;
+
+const heights = {trajectory: kTrajectoryHeight, route: kRouteHeight};
 
 export function nodeEnd(nodes, id) {
   return {
@@ -24,9 +27,22 @@ function cross({x, y, floor}) {
   return [end(-size, -size), end(size, size), end(-size, size), end(size, -size)];
 }
 
-/** Trajectory, edges, attempts and doubts, each with its layer and floor (-1: between floors). */
+/** A way through the building: pieces of it, each with its floor (-1: from one floor to the next). */
+function* routePieces({legs}) {
+  const end = (place, floor) => ({before: place, after: place, from: floor, to: floor, fraction: 0});
+  let last = null;
+  for (const {floor, points} of legs) {
+    for (const point of points) {
+      const next = end(point, floor);
+      if (last) yield {floor: last.from === floor ? floor : -1, ends: [last, next]};
+      last = next;
+    }
+  }
+}
+
+/** Trajectory, edges, attempts, doubts and a route, each with its layer and floor (-1: between floors). */
 export function makeLines(model, materials) {
-  const {trajectory, edges, attempts, nodes, doubts} = model;
+  const {trajectory, edges, attempts, nodes, doubts, route} = model;
   // layer -> floor (or -1: between floors) -> ends
   const sets = new Map();
   const add = (layer, floor, ends, items) => {
@@ -58,13 +74,16 @@ export function makeLines(model, materials) {
   for (const attempt of attempts) {
     add(attempt.state, attempt.floor, [nodeEnd(nodes, attempt.a), nodeEnd(nodes, attempt.b)], attempt);
   }
+  if (route) {
+    for (const {floor, ends} of routePieces(route)) add('route', floor, ends);
+  }
   for (const doubt of doubts) add('doubts', doubt.floor, cross(doubt));
   const all = [];
   for (const {layer, floor, ends, items} of sets.values()) {
     const lines = new MovingLines(
-        ends, layer === 'trajectory' ? kTrajectoryHeight : kGraphHeight, materials[layer]);
+        ends, heights[layer] ?? kGraphHeight, materials[layer]);
     Object.assign(lines, {layer, floor, items});
-    lines.object.renderOrder = layer in closureStates ? 2 : 1;
+    lines.object.renderOrder = layer === 'route' ? 3 : layer in closureStates ? 2 : 1;
     all.push(lines);
   }
   return all;

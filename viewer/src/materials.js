@@ -17,6 +17,7 @@ export function makeMaterials() {
     floor_change: line(2.4, {dashed: true, dashSize: 0.5, gapSize: 0.35}),
     by_hand: line(2.4),
     doubts: line(4),
+    route: line(5),
     highlight: line(5),
   };
   for (const [state, look] of Object.entries(closureStates)) materials[state] = line(look.width);
@@ -53,7 +54,7 @@ export function applyColours(materials, floorGroups) {
   }
   const colours = {
     trajectory: '--trajectory', odometry: '--odometry', floor_change: '--floor-change',
-    by_hand: '--by-hand', doubts: '--audited', highlight: '--highlight',
+    by_hand: '--by-hand', doubts: '--audited', route: '--route', highlight: '--highlight',
   };
   for (const [state, look] of Object.entries(closureStates)) colours[state] = look.colour;
   for (const [name, variable] of Object.entries(colours)) materials[name].color = cssColour(variable);

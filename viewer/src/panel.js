@@ -90,6 +90,7 @@ export function mapPage(page, model, scene, {blendTo, separation}) {
           layer('odometry_nodes', 'Odometry-only nodes', key('dot small', '--odometry'), nodes.count - scanNodes),
           layer('odometry', 'Odometry edges', key('line', '--odometry'), kindCount('odometry'), false),
           layer('floor_change', 'Floor changes', key('line dashed', '--floor-change'), kindCount('floor_change')),
+          model.route ? layer('route', `Way of ${metres(model.route.length_m, 1)}`, key('line', '--route')) : null,
           model.doubts.length ? layer('doubts', 'Doubts', key('line', '--audited'), model.doubts.length) : null)),
       part('Closures', element('ul', {class: 'toggles'},
           Object.entries(closureStates).map(([state, look]) =>

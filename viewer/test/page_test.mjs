@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// node page_test.mjs CHROMIUM REPORT EDITS: opens a report from disk and uses it as a person would. The
-// lines that it proposes for a validated closure and for a match that was not validated go to EDITS.
+// node page_test.mjs CHROMIUM REPORT EDITS WAY: opens a report from disk and uses it as a person would,
+// then WAY, the same with a way through the building. The lines that it proposes for a validated closure
+// and for a match that was not validated go to EDITS.
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
 import {pathToFileURL} from 'node:url';
 import {chromium} from 'playwright-core';
 
-const [, , executablePath, report, edits] = process.argv;
+const [, , executablePath, report, edits, way] = process.argv;
 const kPatience = 120000;  // ms; everything is drawn by the processor
 
 const browser = await chromium.launch({
@@ -110,8 +111,16 @@ try {
   assert.match(await page.locator('#table-one').textContent(), /Attempted.*Matched.*Validated.*Time/);
   assert.match(await page.locator('#title').textContent(), /<script>alert\(1\)<!--/);
 
+  assert.equal(await page.locator('#layer-route').count(), 0, 'a way where none was asked for');
+  await page.goto(pathToFileURL(way).href);
+  await page.waitForSelector('html[data-ready=true]');
+  const withWay = await picture();
+  await page.locator('#layer-route').uncheck();
+  assert.notEqual(await picture(), withWay, 'the way is not drawn');
+  assert.match(await page.locator('label:has(#layer-route)').textContent(), /Way of [\d.]+.m/);
+
   assert.deepEqual(complaints, []);
-  assert.deepEqual(requests.filter((url) => url !== address && !/^(data|blob):/.test(url)), []);
+  assert.deepEqual(requests.filter((url) => url !== address && url !== pathToFileURL(way).href && !/^(data|blob):/.test(url)), []);
   console.log('the page is as it should be');
 } finally {
   await browser.close();

@@ -15,7 +15,12 @@ trap 'rm -rf "$map"' EXIT
 log="$map/<b>office & '\"<script>alert(1)<!--.log.gz"
 cp "$viewer/../data/office.log.gz" "$log"
 "$2" map "$log" -o "$map/out" --quiet
-node "$1/test/page_test.mjs" "$chromium" "$map/out/report.html" "$map/edits.yaml"
+# From where the drive began to where half of it was done.
+scan() { awk -v line="$2" 'NR == line {print "t=" $1}' "$1/trajectory.tum"; }
+scans=$(wc -l < "$map/out/trajectory.tum")
+"$2" route "$map/out" --from "$(scan "$map/out" 1)" --to "$(scan "$map/out" $((scans / 2)))" \
+  --report "$map/way.html" --quiet
+node "$1/test/page_test.mjs" "$chromium" "$map/out/report.html" "$map/edits.yaml" "$map/way.html"
 "$2" export "$map/out" --format all --edits "$map/edits.yaml" -o "$map/edited" --quiet
 validated() { grep -c ',validated,' "$1/closures.csv"; }
 [[ $(validated "$map/edited") -eq $(validated "$map/out") ]] ||
