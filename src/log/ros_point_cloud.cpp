@@ -230,7 +230,9 @@ std::optional<RosPointCloud> ParsePointCloud(const unsigned char* data, std::siz
   const bool are_floats = x.IsFloat() && y.IsFloat() && z.IsFloat();
   std::vector<double> times;
   if (time) times.reserve(message.height * message.width);
-  for (std::uint64_t row = 0; row < message.height; ++row) {
+  // Rows without points may be claimed by the billion.
+  const std::uint64_t rows = message.width == 0 ? 0 : message.height;
+  for (std::uint64_t row = 0; row < rows; ++row) {
     const unsigned char* point = message.data.data + row * message.row_step;
     for (std::uint64_t i = 0; i < message.width; ++i, point += message.point_step) {
       CloudPoint read;
