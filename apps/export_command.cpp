@@ -43,6 +43,7 @@ struct ExportArguments {
   bool keep_frame = false;
   std::vector<std::string> clouds;
   double voxel_m = 0.05;
+  bool keeps_passers_by = false;
   RobotHeights robot;
   double memory_mib = 1024.0;
   bool quiet = false;
@@ -140,6 +141,7 @@ int ExportClouds(const ExportArguments& arguments) {
   request.file = arguments.file;
   request.logs = arguments.clouds;
   request.voxel_m = arguments.voxel_m;
+  request.keeps_passers_by = arguments.keeps_passers_by;
   request.heights = arguments.heights;
   request.robot = arguments.robot;
   request.memory_mib = arguments.memory_mib;
@@ -224,6 +226,9 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->check(CLI::Range(0.005, 10.0))
       ->capture_default_str()
       ->type_name("METRES");
+  command->add_flag("--keep-passers-by", arguments->keeps_passers_by,
+                    "of pcd, ply and las with --clouds: also points where rays passed later or "
+                    "before, which is faster");
   command
       ->add_option("--robot-height", arguments->robot.high_m,
                    "of a grid with --clouds: what hangs higher the robot passes below, m")
@@ -232,8 +237,8 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->type_name("METRES");
   command
       ->add_option("--memory", arguments->memory_mib,
-                   "of octomap and grid with --clouds: voxels at the most, MiB; the log is read "
-                   "again for floors that do not fit")
+                   "of --clouds: voxels for rays at the most, MiB; the log is read again for "
+                   "floors that do not fit")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str()
       ->type_name("MIB");

@@ -49,6 +49,18 @@ struct Written {
   std::string remark;
 };
 
+/// Voxels in which one who walks by is a few, and that a wall's noise does not reach through.
+SpaceOccupancyOptions RaysBetweenPoints(const SavedMap& map, const SpaceRequest& request,
+                                        const SpaceExportOptions& points) {
+  constexpr double kPartOfABody = 0.1;  // m
+  SpaceOccupancyOptions options;
+  options.votes.resolution_m = std::max(kPartOfABody, map.origin.options.grid.resolution_m);
+  options.max_range_m = points.max_range_m;
+  options.floor = points.floor;
+  options.memory_mib = request.memory_mib;
+  return options;
+}
+
 Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::path& folder,
                     ProgressBar& progress) {
   SpaceExportOptions options;
@@ -57,13 +69,23 @@ Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::
   options.floor = request.floor;
   options.heights = request.heights;
   SpaceExport space(map.result, options);
-  ReadClouds(map, request, "placing clouds", progress,
-             [&](const LevelledCloud& cloud) { space.Add(cloud); });
+  std::optional<SpaceOccupancy> rays;
+  if (!request.keeps_passers_by) rays.emplace(map.result, RaysBetweenPoints(map, request, options));
+  ReadClouds(map, request, "placing clouds", progress, [&](const LevelledCloud& cloud) {
+    space.Add(cloud);
+    if (rays) rays->Add(cloud);
+  });
   CheckTaken(request, space.poses());
+  const std::string remark = std::to_string(space.poses().taken()) + " clouds";
+  while (rays && rays->Finish()) {
+    ReadClouds(map, request, "casting rays of other floors", progress,
+               [&](const LevelledCloud& cloud) { rays->Add(cloud); });
+  }
   progress.Stage("writing");
   const std::string name = fs::path(request.file).filename();
-  space.Write(*PointFormat(request.format), folder / name);
-  return {{name}, std::to_string(space.poses().taken()) + " clouds"};
+  const std::size_t points =
+      space.Write(*PointFormat(request.format), folder / name, rays ? &*rays : nullptr);
+  return {{name}, remark + ", " + std::to_string(points) + " points"};
 }
 
 Written WriteOccupancy(const SavedMap& map, const SpaceRequest& request, const fs::path& folder,

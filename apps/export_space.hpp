@@ -16,10 +16,11 @@ struct SpaceRequest {
   std::string file;
   std::vector<std::string> logs;  ///< bags of one recording, in its order
   double voxel_m = 0.05;          ///< of points
+  bool keeps_passers_by = false;  ///< points where later rays saw through
   std::optional<FloorId> floor;   ///< empty: all
   HeightBand heights;             ///< in world
   RobotHeights robot;             ///< of grids
-  double memory_mib = 1024.0;     ///< of octrees and grids
+  double memory_mib = 1024.0;     ///< of voxels that rays pass
   bool quiet = false;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/export/space_export.hpp"
 
+#include <algorithm>
+
 #include "las_file.hpp"
 #include "point_cloud_file.hpp"
 
@@ -32,8 +34,15 @@ void SpaceExport::Add(const LevelledCloud& cloud) {
   }
 }
 
-void SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path) const {
-  const std::vector<SpacePoint> points = voxels_.Points(options_.least_hits);
+std::size_t SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path,
+                               const SpaceOccupancy* seen_through) const {
+  std::vector<SpacePoint> points = voxels_.Points(options_.least_hits);
+  if (seen_through != nullptr) {
+    const auto is_free = [seen_through](const SpacePoint& point) {
+      return seen_through->At(static_cast<FloorId>(point.label), point.position) == Cell::kFree;
+    };
+    points.erase(std::remove_if(points.begin(), points.end(), is_free), points.end());
+  }
   const std::vector<Colour> colours = FloorColours(map_.graph.floors());
   switch (format) {
     case SpaceFormat::kPcd:
@@ -46,6 +55,7 @@ void SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path) c
       WriteLas(points, colours, path);
       break;
   }
+  return points.size();
 }
 
 }  // namespace masked_mapper

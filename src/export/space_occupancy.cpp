@@ -2,6 +2,7 @@
 #include "masked_mapper/export/space_occupancy.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace masked_mapper {
 namespace {
 
 constexpr double kMib = 1024.0 * 1024.0;
+constexpr double kFarthestVoxel = 1 << 19;  // from the origin
 
 }  // namespace
 
@@ -83,6 +85,16 @@ bool SpaceOccupancy::Finish() {
   }
   poses_.emplace(map_, options_.spacing, options_.floor);
   return is_more;
+}
+
+Cell SpaceOccupancy::At(FloorId floor, const Eigen::Vector3d& place_in_world) const {
+  VoxelIndex voxel{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double index = std::floor(place_in_world(axis) / options_.votes.resolution_m);
+    if (!(std::abs(index) < kFarthestVoxel)) return Cell::kUnknown;
+    voxel[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(index);
+  }
+  return floors_[static_cast<std::size_t>(floor)].states.At(voxel);
 }
 
 void SpaceOccupancy::WriteOctree(const std::filesystem::path& path) const {

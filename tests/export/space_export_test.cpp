@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -50,10 +51,10 @@ LevelledCloud CloudAt(double stamp) {
   return cloud;
 }
 
-std::string Ply(const SpaceExport& space) {
+std::string Ply(const SpaceExport& space, const SpaceOccupancy* seen_through = nullptr) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("masked_mapper_space_" + std::to_string(::getpid()) + ".ply");
-  space.Write(SpaceFormat::kPly, path);
+  space.Write(SpaceFormat::kPly, path, seen_through);
   std::ifstream file(path, std::ios::binary);
   std::stringstream bytes;
   bytes << file.rdbuf();
@@ -81,6 +82,57 @@ TEST(SpaceExportTest, CloudsStandAtTheirPosesAndElevations) {
   std::memcpy(p.data(), ply.data() + begin + kPoint, sizeof(p));
   EXPECT_NEAR(p[0], 1.0 - 0.02, 1e-4);
   EXPECT_NEAR(p[1], 2.02, 1e-4);
+}
+
+TEST(SpaceExportTest, WhoWalkedByIsCarvedAwayByTheRaysToTheWallBehind) {
+  BuildingMap map;
+  map.graph.AddFloor({});
+  for (int i = 0; i < 12; ++i) {
+    TrajectoryPose pose;
+    pose.stamp = pose.log_stamp = 1.0 + i;
+    pose.T_world_robot = {0.4 * i, 0.0, 0.0};
+    map.trajectory.push_back(pose);
+  }
+  SpaceExport points(map, {});
+  SpaceOccupancyOptions options;
+  options.votes.resolution_m = 0.1;
+  SpaceOccupancy rays(map, options);
+  // A wall at y = 3; while the robot is at its first place somebody stands before it at y = 1.5.
+  for (int i = 0; i < 12; ++i) {
+    LevelledCloud cloud;
+    cloud.log_stamp = 1.0 + i;
+    cloud.lidar = {0.0, 0.0, 1.0};
+    for (float x = -4.0F; x <= 6.0F; x += 0.02F) {
+      for (float z = 0.5F; z <= 1.6F; z += 0.05F) {
+        CloudPoint point;
+        point.position = {x - 0.4F * static_cast<float>(i), 3.0F, z};
+        const float half_way = 0.5F * point.position.x();
+        const bool is_hidden = i == 0 && std::abs(half_way) < 0.2F;
+        if (is_hidden) point.position = {half_way, 1.5F, 1.0F + 0.5F * (z - 1.0F)};
+        cloud.points.push_back(point);
+      }
+    }
+    points.Add(cloud);
+    rays.Add(cloud);
+  }
+  EXPECT_FALSE(rays.Finish());
+  EXPECT_EQ(rays.At(0, {0.05, 1.52, 1.05}), Cell::kFree);
+  EXPECT_EQ(rays.At(0, {0.05, 3.02, 1.05}), Cell::kOccupied);
+  EXPECT_EQ(rays.At(0, {0.05, 1e9, 1.05}), Cell::kUnknown);
+  const auto count_at = [](const std::string& ply, bool is_wall) {
+    std::size_t count = 0;
+    for (std::size_t at = ply.find("end_header\n") + 11; at < ply.size(); at += 12 + 3 + 4 + 4) {
+      std::array<float, 3> p{};
+      std::memcpy(p.data(), ply.data() + at, sizeof(p));
+      count += is_wall == (p[1] > 2.5F) ? 1 : 0;
+    }
+    return count;
+  };
+  const std::string all = Ply(points);
+  const std::string carved = Ply(points, &rays);
+  EXPECT_GT(count_at(all, false), 20U);
+  EXPECT_EQ(count_at(carved, false), 0U);
+  EXPECT_EQ(count_at(carved, true), count_at(all, true));
 }
 
 TEST(SpaceExportTest, TakesNoCloudWhereTheRobotStands) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "masked_mapper/export/cloud_poses.hpp"
+#include "masked_mapper/export/space_occupancy.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/octree.hpp"
@@ -37,8 +38,11 @@ class SpaceExport {
 
   const CloudPoses& poses() const { return poses_; }
   std::size_t voxels() const { return voxels_.size(); }
-  /// Throws std::runtime_error when the file cannot be written.
-  void Write(SpaceFormat format, const std::filesystem::path& path) const;
+  /// Without the points in which `seen_through` (unless null) saw nothing but free space: those of
+  /// who walked by. The number of points in the file. Throws std::runtime_error when it cannot be
+  /// written.
+  std::size_t Write(SpaceFormat format, const std::filesystem::path& path,
+                    const SpaceOccupancy* seen_through) const;
 
  private:
   const BuildingMap& map_;

@@ -42,6 +42,9 @@ class SpaceOccupancy {
   /// After the last cloud of the log: true when floors wait for it to be read once more.
   bool Finish();
 
+  /// What the votes of a floor say of a place in world, once all is seen.
+  Cell At(FloorId floor, const Eigen::Vector3d& place_in_world) const;
+
   const CloudPoses& poses() const { return *poses_; }
   double peak_mib() const { return peak_mib_; }  ///< of votes and what was made of them
 
