@@ -7,11 +7,14 @@ namespace masked_mapper {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t requested = 0;
 
 extern "C" void Remember(int signal) {
   interrupted = 1;
   std::signal(signal, SIG_DFL);
 }
+
+extern "C" void RememberRequest(int /*signal*/) { requested = 1; }
 
 }  // namespace
 
@@ -29,6 +32,14 @@ bool TakeInterrupt() {
   interrupted = 0;
   CatchInterrupts();
   return true;
+}
+
+void CatchRequests() { std::signal(SIGUSR1, RememberRequest); }
+
+bool TakeRequest() {
+  const bool came = requested != 0;
+  requested = 0;
+  return came;
 }
 
 }  // namespace masked_mapper

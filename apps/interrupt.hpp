@@ -22,4 +22,10 @@ void ThrowIfInterrupted();
 /// a robot until it is told to stop.
 bool TakeInterrupt();
 
+/// From now on SIGUSR1 asks for the map so far, and ends the program no longer.
+void CatchRequests();
+
+/// Whether one came since the last time.
+bool TakeRequest();
+
 }  // namespace masked_mapper

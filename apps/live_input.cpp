@@ -7,9 +7,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "interrupt.hpp"
@@ -21,50 +20,24 @@ namespace {
 constexpr int kLookEveryMs = 100;
 constexpr int kStalledMs = 10'000;
 
-/// Gone with the program, whatever ends it.
-int OpenNameless() {
-  std::string name = (std::filesystem::temp_directory_path() / "masked_mapper-XXXXXX").string();
-  const int file = ::mkostemp(name.data(), O_CLOEXEC);
-  if (file >= 0) ::unlink(name.c_str());
-  return file;
-}
-
 }  // namespace
 
-LiveInput::LiveInput(const std::string& path) : path_(path), kept_(path) {
-  const bool is_stdin = path == "-";
-  file_ = ::open(is_stdin ? "/dev/stdin" : path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file_ < 0) throw InputError(path + ": " + std::strerror(errno));
+LiveInput::LiveInput(std::string path) : path_(std::move(path)) {
+  const bool is_stdin = path_ == "-";
+  if (is_stdin) stream_ = std::make_shared<Spool>(path_);
+  file_ = ::open(is_stdin ? "/dev/stdin" : path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) throw InputError(path_ + ": " + std::strerror(errno));
   struct stat status {};
-  if (!is_stdin && (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode))) {
-    ::close(file_);
-    throw InputError(path + ": is no file that grows; a pipe is read with `-`");
-  }
-  if (!is_stdin) return;
-  kept_file_ = OpenNameless();
-  if (kept_file_ < 0) {
-    ::close(file_);
-    throw InputError("-: is kept in a temporary file, which cannot be made: " +
-                     std::string(std::strerror(errno)));
-  }
-  kept_ = "/proc/self/fd/" + std::to_string(kept_file_);
-}
-
-LiveInput::~LiveInput() {
+  if (is_stdin || (::fstat(file_, &status) == 0 && S_ISREG(status.st_mode))) return;
   ::close(file_);
-  if (kept_file_ >= 0) ::close(kept_file_);
+  throw InputError(path_ + ": is no file that grows; a pipe is read with `-`");
 }
 
-void LiveInput::Keep(std::string_view bytes) const {
-  while (kept_file_ >= 0 && !bytes.empty()) {
-    const ssize_t written = ::write(kept_file_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw InputError("-: is kept in a temporary file, which failed: " +
-                       std::string(std::strerror(errno)));
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+LiveInput::~LiveInput() { ::close(file_); }
+
+std::unique_ptr<LogSource> LiveInput::Source(const LogOptions& options) const {
+  if (stream_) return std::make_unique<LogSource>(stream_, options);
+  return std::make_unique<LogSource>(path_, options);
 }
 
 void LiveInput::CheckLength(std::uint64_t read) const {
@@ -75,7 +48,9 @@ void LiveInput::CheckLength(std::uint64_t read) const {
 }
 
 void LiveInput::Listen(const std::function<void(std::string_view)>& on_bytes,
-                       ProgressBar& progress) {
+                       const std::function<void()>& on_look, ProgressBar& progress) {
+  progress.Stage("listening");
+  progress.Say("listening to " + path_);  // from here on Ctrl-C is the end of the log
   std::vector<char> block(std::size_t{1} << 16U);
   int silent_ms = 0;
   std::uint64_t read = 0;
@@ -83,6 +58,7 @@ void LiveInput::Listen(const std::function<void(std::string_view)>& on_bytes,
   while (true) {
     is_told_to_end |= TakeInterrupt();
     if (is_told_to_end && !IsFollowed()) return;
+    on_look();
     pollfd polled{file_, POLLIN, 0};
     const int ready = ::poll(&polled, 1, kLookEveryMs);
     if (ready < 0) continue;  // a signal
@@ -94,7 +70,7 @@ void LiveInput::Listen(const std::function<void(std::string_view)>& on_bytes,
       if (silent_ms >= kStalledMs) progress.Warn(path_ + ": goes on");
       silent_ms = 0;
       const std::string_view bytes(block.data(), static_cast<std::size_t>(count));
-      Keep(bytes);
+      if (stream_) stream_->Add(bytes);
       on_bytes(bytes);
       continue;
     }

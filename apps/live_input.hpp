@@ -5,9 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "masked_mapper/log/log_source.hpp"
+#include "masked_mapper/log/spool.hpp"
 #include "progress_bar.hpp"
 
 namespace masked_mapper {
@@ -16,27 +19,31 @@ class LiveInput {
  public:
   /// `-` is standard input, which is over when its writer closes it, and is kept in a temporary
   /// file; a file is over with Ctrl-C. Throws InputError.
-  explicit LiveInput(const std::string& path);
+  explicit LiveInput(std::string path);
   ~LiveInput();
   LiveInput(const LiveInput&) = delete;
   LiveInput& operator=(const LiveInput&) = delete;
 
-  /// Until it is over, or Ctrl-C; says when nothing comes for long. Throws InputError when the file
-  /// gets shorter.
-  void Listen(const std::function<void(std::string_view)>& on_bytes, ProgressBar& progress);
+  /// Until it is over, or Ctrl-C; says when nothing comes for long. `on_look` is called whenever
+  /// there was a look for more, ten times a second at least unless the two themselves take longer.
+  /// Throws InputError when the file gets shorter.
+  void Listen(const std::function<void(std::string_view)>& on_bytes,
+              const std::function<void()>& on_look, ProgressBar& progress);
 
+  /// As it was given.
+  const std::string& path() const { return path_; }
   /// Where all that came can be read.
-  const std::string& kept() const { return kept_; }
+  const std::string& kept_path() const { return stream_ ? stream_->path() : path_; }
+  /// All that came, as a log.
+  std::unique_ptr<LogSource> Source(const LogOptions& options) const;
 
  private:
-  bool IsFollowed() const { return kept_file_ < 0; }
-  void Keep(std::string_view bytes) const;
+  bool IsFollowed() const { return stream_ == nullptr; }
   void CheckLength(std::uint64_t read) const;
 
   std::string path_;
-  std::string kept_;
+  std::shared_ptr<Spool> stream_;  ///< null: a file keeps itself
   int file_ = -1;
-  int kept_file_ = -1;  ///< -1: a file keeps itself
 };
 
 }  // namespace masked_mapper

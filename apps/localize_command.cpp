@@ -116,7 +116,6 @@ bool AnswerLive(LiveInput& input, const SavedMap& saved, const Options& options,
       std::cout << PoseLine(saved.result, localizer.result().scans.back()) << std::endl;
     }
   };
-  progress.Stage("listening");
   input.Listen(
       [&](std::string_view bytes) {
         if (!is_text) is_text = BeginsAsText(bytes);
@@ -124,7 +123,7 @@ bool AnswerLive(LiveInput& input, const SavedMap& saved, const Options& options,
         log.Add(bytes);
         answer();
       },
-      progress);
+      [] {}, progress);
   if (!is_text.value_or(true)) return false;
   log.Finish();
   answer();
@@ -191,12 +190,12 @@ int RunLocalize(const LocalizeArguments& arguments) {
   const LiveDrive live = Listen(arguments, saved, options, progress);
   const bool says_poses = arguments.poses && !live.said_poses;
   const std::vector<std::vector<std::string>> recordings =
-      live.input ? std::vector<std::vector<std::string>>{{live.input->kept()}}
+      live.input ? std::vector<std::vector<std::string>>{{live.input->path()}}
                  : RecordingsOf(arguments.logs);
   for (const std::vector<std::string>& files : recordings) {
-    const bool is_one = files.size() == 1;
-    const auto source = is_one ? std::make_unique<LogSource>(files.front(), options.mapping.log)
-                               : std::make_unique<LogSource>(files, options.mapping.log);
+    const std::unique_ptr<LogSource> source = live.input
+                                                  ? live.input->Source(options.mapping.log)
+                                                  : OpenRecording(files, options.mapping.log);
     run.Drive(*source, options.mapping, says_poses);
   }
   const std::vector<MapChange> changes = localizer.Changes();

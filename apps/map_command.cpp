@@ -26,12 +26,14 @@ std::string MaskHelp() {
 }
 
 void AddInputs(CLI::App* command, MapArguments* arguments) {
+  command->add_option(
+      "LOG", arguments->logs,
+      "the robot's log, `-`: standard input; several drives of one building are joined,\n"
+      "bags of one recording that go on from each other are one drive");
   command
-      ->add_option(
-          "LOG", arguments->logs,
-          "the robot's log, `-`: standard input; several drives of one building are joined,\n"
-          "bags of one recording that go on from each other are one drive")
-      ->required();
+      ->add_option("--follow", arguments->follow,
+                   "in place of LOG: one that is still being written, until Ctrl-C")
+      ->type_name("FILE");
   command->add_option("-o,--output", arguments->out, "folder to write the map to")
       ->required()
       ->type_name("OUT");
@@ -72,6 +74,13 @@ void AddRunFlags(CLI::App* command, MapArguments* arguments) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->type_name("SECONDS");
+  command
+      ->add_option("--every", arguments->every_s,
+                   "of a log that comes live (`-` from a pipe, --follow): write the map so far\n"
+                   "every so many seconds, 0: only when SIGUSR1 asks")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->type_name("SECONDS");
   command->add_flag("--force", arguments->force, "replace the map that is in OUT");
   command->add_flag("--quiet", arguments->quiet, "print errors only");
   command->add_flag_callback(
@@ -87,6 +96,7 @@ constexpr const char* kFooter =
     "  masked_mapper map drive.bag -o out --floors floors.csv\n"
     "  masked_mapper map monday.log.gz tuesday.log.gz -o out\n"
     "  masked_mapper map wednesday.log.gz --onto out -o grown\n"
+    "  robot | masked_mapper map - -o out --every 60\n"
     "  masked_mapper map after_works.log.gz --onto out --forget -o renewed\n"
     "\n"
     "OUT holds building.mmap (the map itself), building.bt (OctoMap), building.pcd and .ply,\n"
@@ -103,7 +113,16 @@ constexpr const char* kFooter =
     "command with --resume goes on.\n\n"
     "Several logs: each is mapped by itself, from an unknown start, and tied to the others by\n"
     "validated closures alone. A drive that nothing ties stays a piece of its own beside them,\n"
-    "with floors called <label>.drive<n>; summary.json (`drives`) and a warning say so.";
+    "with floors called <label>.drive<n>; summary.json (`drives`) and a warning say so.\n\n"
+    "While a log comes live, building.mmap in OUT is the map so far, and says so: all that came "
+    "until\n"
+    "it was asked for, mapped as if that were the log; `info`, `export` and `localize` open it. "
+    "It is\n"
+    "made beside the listening, in half of the time at most. When the writer ends, however, or "
+    "with\n"
+    "Ctrl-C, the map is that of all that came, as it is of the file. Whatever ends the program "
+    "before,\n"
+    "the map so far stays.";
 
 }  // namespace
 

@@ -13,17 +13,19 @@
 
 #include "finished_map.hpp"
 #include "interrupt.hpp"
+#include "live_input.hpp"
+#include "map_drives.hpp"
+#include "map_so_far.hpp"
 #include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/closing_table.hpp"
 #include "masked_mapper/export/output_folder.hpp"
-#include "masked_mapper/joining/drive_joining.hpp"
 #include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/log/recordings.hpp"
+#include "masked_mapper/log/spool.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"
 #include "masked_mapper/map_file/finished_drives.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -33,12 +35,19 @@
 namespace masked_mapper {
 namespace {
 
+/// Whether OUT holds what came of a log before it was over, and nobody finished it.
+bool HoldsMapSoFar(const std::string& out) {
+  const std::filesystem::path file = std::filesystem::path(out) / kMapFileName;
+  return std::filesystem::exists(file) && !ReadMapFile(file).origin.so_far.empty();
+}
+
 /// What stands in the way of writing to OUT.
 ExistingFolder HowToTreat(const MapArguments& arguments) {
+  if (arguments.force) return ExistingFolder::kReplace;
   const bool is_empty =
       std::filesystem::is_directory(arguments.out) && std::filesystem::is_empty(arguments.out);
-  if (arguments.resume && is_empty) return ExistingFolder::kReplace;
-  return arguments.force ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
+  const bool may_go_on = arguments.resume && (is_empty || HoldsMapSoFar(arguments.out));
+  return may_go_on ? ExistingFolder::kReplace : ExistingFolder::kRefuse;
 }
 
 /// The map that is asked for, when OUT holds it already. Throws InputError when it holds another.
@@ -46,97 +55,11 @@ std::optional<SavedMap> FinishedMap(const MapArguments& arguments, const MapOrig
   const std::filesystem::path file = std::filesystem::path(arguments.out) / kMapFileName;
   if (!arguments.resume || arguments.force || !std::filesystem::exists(file)) return {};
   SavedMap map = ReadMapFile(file);
+  if (!map.origin.so_far.empty()) return {};
   const std::string difference = DifferenceFrom(map.origin, origin);
   if (difference.empty()) return map;
   throw InputError(arguments.out + " holds a finished map that was made otherwise: " + difference +
                    "; --force replaces it");
-}
-
-/// One log as it is asked for among several.
-MapOrigin OriginOfDrive(const MapOrigin& origin, std::size_t drive) {
-  MapOrigin own = origin;
-  if (drive == 0) return own;
-  own.log = origin.later_logs[drive - 1].log;
-  own.options.mapping.floors.file = origin.later_logs[drive - 1].floors;
-  return own;
-}
-
-/// What is kept on disk of a map in the making.
-struct Keeping {
-  FinishedDrives finished;
-  std::unique_ptr<CheckpointFile> checkpoints;  ///< of the drive at work
-  std::size_t drives = 1;
-
-  bool HasAnything() const { return finished.count() > 0 || HasCheckpoint(); }
-  /// To be gone on from, in percent of all logs.
-  int Percent() const {
-    const double part = HasCheckpoint() ? checkpoints->progress() : 0.0;
-    const double done = static_cast<double>(finished.count()) + part;
-    return static_cast<int>(100.0 * done / static_cast<double>(drives));
-  }
-
- private:
-  bool HasCheckpoint() const { return checkpoints && checkpoints->HasCheckpoint(); }
-};
-
-void WarnOfLeftAside(const std::string& name, const SavedMap& map, ProgressBar& progress) {
-  for (const std::string& line : map.left_aside) progress.Warn(name + ": " + line);
-}
-
-/// The logs, each opened once.
-using LogSources = std::vector<std::unique_ptr<LogSource>>;
-
-/// Maps one of the logs, unless it is done already.
-BuildingMap MapDrive(const MapArguments& arguments, const MapOrigin& origin, std::size_t drive,
-                     LogSource& source, Keeping& keeping, ProgressBar& progress) {
-  const bool is_alone = keeping.drives == 1 && origin.onto.empty();
-  if (!is_alone) {
-    std::optional<BuildingMap> done = keeping.finished.Load(drive);
-    if (done) return std::move(*done);
-  }
-  const MapOrigin own = OriginOfDrive(origin, drive);
-  keeping.checkpoints = std::make_unique<CheckpointFile>(
-      arguments.out, origin, arguments.checkpoint_s, arguments.resume, drive);
-  // What came through a pipe is gone when the program ends: there is nothing to go on with.
-  CheckpointStore* const store = source.is_stream() ? nullptr : keeping.checkpoints.get();
-  BuildingMap map = MapLog(source, own.mask, own.options.mapping, progress, store);
-  const bool is_worth_keeping = keeping.checkpoints->HasCheckpoint() ||
-                                keeping.finished.count() > 0 || keeping.checkpoints->IsDue();
-  if (is_alone || !is_worth_keeping || store == nullptr) return map;
-  if (arguments.checkpoint_s == 0.0) return map;
-  keeping.checkpoints.reset();
-  try {
-    keeping.finished.Save(drive, map);
-  } catch (const std::runtime_error& error) {
-    // As with checkpoints: a full disk must not end what needs none of it.
-    progress.Warn(std::string(error.what()) + "; going on without keeping the drive");
-  }
-  return map;
-}
-
-/// Maps every log by itself and joins them, to OLD first of all.
-BuildingMap MapLogs(const MapArguments& arguments, const MapOrigin& origin,
-                    const LogSources& sources, Keeping& keeping, ProgressBar& progress) {
-  std::vector<BuildingMap> maps;
-  double onto_seconds = 0.0;
-  if (!origin.onto.empty()) {
-    const StageTimer timer(onto_seconds);
-    progress.Stage("reading " + origin.onto);
-    SavedMap old = ReadMapFile(MapFileOf(origin.onto));
-    WarnOfLeftAside(origin.onto, old, progress);
-    maps.push_back(std::move(old.result));
-    if (maps.back().trajectory.empty() || maps.back().drives.empty()) {
-      throw InputError(origin.onto + ": a map without a scan cannot be grown");
-    }
-  }
-  for (std::size_t drive = 0; drive < keeping.drives; ++drive) {
-    maps.push_back(MapDrive(arguments, origin, drive, *sources[drive], keeping, progress));
-  }
-  BuildingMap map = JoinDrives(std::move(maps), origin.options.drive_joins,
-                               origin.options.mapping.closures, progress);
-  map.seconds.read += onto_seconds;
-  map.seconds.total += onto_seconds;
-  return map;
 }
 
 /// Mends the map; empty, or why it stays as it is.
@@ -154,8 +77,9 @@ std::string EditFault(const MapArguments& arguments, const Options& options, Bui
   return "";
 }
 
-/// What to add to the word of a run that ended early.
-std::string HowToGoOn(const Keeping& keeping) {
+/// What to add to the word of a run that ended early and left something.
+std::string WhatIsKept(const Keeping& keeping, const std::string& out) {
+  if (!keeping.HasAnything()) return "; the map so far stays in " + out;
   return "; " + std::to_string(keeping.Percent()) + " % of the " +
          (keeping.drives > 1 ? "logs" : "log") + " is kept: the same command with --resume goes on";
 }
@@ -224,11 +148,11 @@ BuildingMap MakeMap(const MapArguments& arguments, const MapOrigin& origin,
   } catch (const InputError&) {
     throw;  // what is at fault is still so when the same command is run again
   } catch (const Interrupted&) {
-    if (!keeping.HasAnything()) throw;
-    throw Interrupted("interrupted" + HowToGoOn(keeping));
+    if (!keeping.HasAnything() && !keeping.has_map_so_far) throw;
+    throw Interrupted("interrupted" + WhatIsKept(keeping, arguments.out));
   } catch (const std::runtime_error& error) {
-    if (!keeping.HasAnything()) throw;
-    throw std::runtime_error(error.what() + HowToGoOn(keeping));
+    if (!keeping.HasAnything() && !keeping.has_map_so_far) throw;
+    throw std::runtime_error(error.what() + WhatIsKept(keeping, arguments.out));
   }
   keeping.checkpoints.reset();
   keeping.finished.Remove();
@@ -273,13 +197,41 @@ Options AskedOptions(const MapArguments& arguments) {
   return options;
 }
 
+/// A log that comes live, when it is over.
+std::unique_ptr<LogSource> Listen(const MapArguments& arguments, const MapOrigin& origin,
+                                  ExistingFolder existing, Keeping& keeping,
+                                  ProgressBar& progress) {
+  CatchRequests();
+  LiveInput input(origin.log);
+  MapSoFar so_far(arguments, origin, input.kept_path(), existing, progress);
+  try {
+    input.Listen([&](std::string_view bytes) { so_far.Note(bytes); }, [&] { so_far.Look(); },
+                 progress);
+  } catch (const InputError& error) {
+    if (!so_far.Finish()) throw;
+    throw InputError(std::string(error.what()) + "; the map so far stays in " + arguments.out);
+  }
+  keeping.has_map_so_far = so_far.Finish();
+  return input.Source(origin.options.mapping.log);
+}
+
 LogSources OpenAll(const Recordings& recordings, const LogOptions& options) {
   LogSources sources;
   for (const std::vector<std::string>& files : recordings) {
-    sources.push_back(files.size() == 1 ? std::make_unique<LogSource>(files.front(), options)
-                                        : std::make_unique<LogSource>(files, options));
+    sources.push_back(OpenRecording(files, options));
   }
   return sources;
+}
+
+/// Whether the log is one that comes live. Throws InputError where flags need one that is.
+bool ComesLive(const MapArguments& arguments) {
+  const bool is_pipe =
+      arguments.logs.size() == 1 && arguments.logs.front() == "-" && Spool::IsStream("/dev/stdin");
+  const bool is_live = is_pipe || !arguments.follow.empty();
+  if (arguments.every_s > 0.0 && !is_live) {
+    throw InputError("--every is for a log that comes live: `-` from a pipe, or --follow FILE");
+  }
+  return is_live;
 }
 
 /// What must not be found out after an hour of mapping.
@@ -292,11 +244,20 @@ void CheckInputs(const MapArguments& arguments, const MapOrigin& origin) {
 
 }  // namespace
 
-int RunMap(const MapArguments& arguments) {
+int RunMap(const MapArguments& asked) {
+  if (asked.logs.empty() && asked.follow.empty()) {
+    throw InputError("map: LOG is required, or --follow FILE");
+  }
+  if (!asked.logs.empty() && !asked.follow.empty()) {
+    throw InputError("map: expected LOG or --follow FILE, one of the two");
+  }
+  MapArguments arguments = asked;
+  if (!asked.follow.empty()) arguments.logs = {asked.follow};
+  const bool is_live = ComesLive(arguments);
   Options options = AskedOptions(arguments);
   MakeMask(arguments.mask, options.mapping.masks);  // throws before the log is looked at
   // Before the work: an hour of mapping must not end in "exists already".
-  const ExistingFolder existing = HowToTreat(arguments);
+  ExistingFolder existing = HowToTreat(arguments);
   const Recordings recordings = RecordingsOf(arguments.logs);
   const MapOrigin origin = OriginOf(arguments, recordings, std::move(options));
   CheckInputs(arguments, origin);
@@ -313,7 +274,13 @@ int RunMap(const MapArguments& arguments) {
     throw InputError("an unfinished map of " + arguments.out +
                      " is there: --resume goes on with it, --force starts afresh");
   }
-  const LogSources sources = OpenAll(recordings, origin.options.mapping.log);
+  LogSources sources;
+  if (is_live) {
+    sources.push_back(Listen(arguments, origin, existing, keeping, progress));
+    if (keeping.has_map_so_far) existing = ExistingFolder::kReplace;
+  } else {
+    sources = OpenAll(recordings, origin.options.mapping.log);
+  }
   // What an earlier run left of finished drives must not be taken for this one's.
   const bool keeps_drives = keeping.drives > 1 || !origin.onto.empty();
   if (!arguments.resume && keeps_drives) keeping.finished.Remove();

@@ -11,6 +11,8 @@ namespace masked_mapper {
 
 struct MapArguments {
   std::vector<std::string> logs;
+  std::string follow;    ///< a log that grows; empty: none
+  double every_s = 0.0;  ///< between two maps so far; 0: none unasked
   std::string out;
   std::string mask = "openings";
   OptionFlags options;

@@ -19,6 +19,8 @@ class ProgressBar : public ProgressSink {
   /// Throws Interrupted after Ctrl-C.
   void Progress(double fraction, std::uint64_t scans) override;
   void Warn(const std::string& message) override;
+  /// One line that is no warning.
+  void Say(const std::string& message) { PrintLine(message); }
   /// The last stage is over.
   void Finish();
 

@@ -6,10 +6,10 @@
 #include "carmen_reader.hpp"
 #include "log_plan.hpp"
 #include "masked_mapper/log/open_bag.hpp"
+#include "masked_mapper/log/spool.hpp"
 #include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "rosbag_reader.hpp"
-#include "spool.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -17,6 +17,22 @@ namespace {
 std::unique_ptr<LogPlan> PlanOf(const std::string& path, const LogOptions& options) {
   if (IsBag(path)) return PlanRosBag({path}, options);
   return PlanCarmenLog(path, options);
+}
+
+std::unique_ptr<LogPlan> PlanOfStream(const Spool& stream, const LogOptions& options) {
+  try {
+    if (BeginsAsSqlite(stream.path())) {
+      throw InputError(stream.name() +
+                       ": a ROS 2 bag in SQLite cannot be read from a stream; give its file");
+    }
+    return PlanOf(stream.path(), options);
+  } catch (const InputError& error) {
+    // The user knows the stream by the name that was given.
+    std::string text = error.what();
+    const std::size_t at = text.find(stream.path());
+    if (at != std::string::npos) text.replace(at, stream.path().size(), stream.name());
+    throw InputError(text);
+  }
 }
 
 /// A pass through a stream, which keeps the stream.
@@ -37,25 +53,17 @@ class SpooledReader final : public LogReader {
 
 LogSource::LogSource(const std::string& path, const LogOptions& options) : path_(path) {
   const std::string file = path == "-" ? "/dev/stdin" : path;
-  if (!Spool::IsStream(file)) {
+  if (Spool::IsStream(file)) {
+    spool_ = std::make_shared<Spool>(path);
+    spool_->AddAllOf(file);
+    plan_ = PlanOfStream(*spool_, options);
+  } else {
     plan_ = PlanOf(file, options);
-    return;
-  }
-  spool_ = std::make_shared<Spool>(file);
-  try {
-    if (BeginsAsSqlite(spool_->path())) {
-      throw InputError(path +
-                       ": a ROS 2 bag in SQLite cannot be read from a stream; give its file");
-    }
-    plan_ = PlanOf(spool_->path(), options);
-  } catch (const InputError& error) {
-    // The user knows the stream by the name that was given.
-    std::string text = error.what();
-    const std::size_t at = text.find(spool_->path());
-    if (at != std::string::npos) text.replace(at, spool_->path().size(), path);
-    throw InputError(text);
   }
 }
+
+LogSource::LogSource(std::shared_ptr<Spool> stream, const LogOptions& options)
+    : path_(stream->name()), spool_(std::move(stream)), plan_(PlanOfStream(*spool_, options)) {}
 
 LogSource::LogSource(const std::vector<std::string>& paths, const LogOptions& options)
     : path_(paths.front()), plan_(PlanRosBag(paths, options)) {}

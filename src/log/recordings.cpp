@@ -7,7 +7,7 @@
 #include <set>
 
 #include "masked_mapper/log/open_bag.hpp"
-#include "spool.hpp"
+#include "masked_mapper/log/spool.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -94,6 +94,12 @@ std::vector<std::vector<std::string>> RecordingsOf(const std::vector<std::string
     for (const std::size_t place : chain) recordings.back().push_back(files[place]);
   }
   return recordings;
+}
+
+std::unique_ptr<LogSource> OpenRecording(const std::vector<std::string>& files,
+                                         const LogOptions& options) {
+  if (files.size() == 1) return std::make_unique<LogSource>(files.front(), options);
+  return std::make_unique<LogSource>(files, options);
 }
 
 }  // namespace masked_mapper

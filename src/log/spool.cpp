@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spool.hpp"
+#include "masked_mapper/log/spool.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/text/input_error.hpp"
@@ -31,17 +32,6 @@ class Descriptor {
   int number_;
 };
 
-bool WriteAll(int file, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t written = ::write(file, bytes, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written;
-    count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 /// A file without a name in the folder for temporary files.
 int OpenNameless() {
   std::error_code error;
@@ -61,27 +51,39 @@ bool Spool::IsStream(const std::string& path) {
   return S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode) || S_ISCHR(status.st_mode);
 }
 
-Spool::Spool(const std::string& path) {
-  const auto fail = [&path](const std::string& what) {
-    throw InputError(path + ": " + what + std::strerror(errno));
-  };
-  const Descriptor stream(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (stream.number() < 0) fail("");
-  file_ = OpenNameless();
-  if (file_ < 0) fail("a stream is kept in a temporary file, which cannot be made: ");
-  std::vector<char> block(std::size_t{1} << 18U);
-  while (true) {
-    const ssize_t count = ::read(stream.number(), block.data(), block.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count == 0) break;
-    if (count < 0 || !WriteAll(file_, block.data(), static_cast<std::size_t>(count))) {
-      ::close(file_);
-      fail("a stream is kept in a temporary file, which failed: ");
-    }
+Spool::Spool(std::string name) : name_(std::move(name)), file_(OpenNameless()) {
+  if (file_ < 0) {
+    throw InputError(name_ + ": a stream is kept in a temporary file, which cannot be made: " +
+                     std::strerror(errno));
   }
   path_ = "/proc/self/fd/" + std::to_string(file_);
 }
 
 Spool::~Spool() { ::close(file_); }
+
+void Spool::Add(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      throw InputError(
+          name_ + ": a stream is kept in a temporary file, which failed: " + std::strerror(errno));
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void Spool::AddAllOf(const std::string& path) {
+  const Descriptor stream(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (stream.number() < 0) throw InputError(name_ + ": " + std::strerror(errno));
+  std::vector<char> block(std::size_t{1} << 18U);
+  while (true) {
+    const ssize_t count = ::read(stream.number(), block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(name_ + ": " + std::strerror(errno));
+    if (count == 0) return;
+    Add({block.data(), static_cast<std::size_t>(count)});
+  }
+}
 
 }  // namespace masked_mapper

@@ -52,6 +52,7 @@ void WriteOrigin(const MapOrigin& origin, const BuildingMap& result, const Datab
     run.BindText("floors." + number).BindText(origin.later_logs[i].floors).Put();
   }
   if (!origin.onto.empty()) run.BindText("onto").BindText(origin.onto).Put();
+  if (!origin.so_far.empty()) run.BindText("so_far").BindText(origin.so_far).Put();
   if (!origin.identity.empty()) run.BindText("identity").BindText(origin.identity).Put();
   run.BindText("motion_source").BindText(Name(result.motion_source)).Put();
   Statement insert(database, "INSERT INTO options(key, value) VALUES (?,?)");

@@ -67,6 +67,7 @@ class Reader {
     map_.origin.log = values["log"];
     map_.origin.mask = values["mask"];
     map_.origin.onto = values["onto"];
+    map_.origin.so_far = values["so_far"];
     map_.origin.identity = values["identity"];
     for (std::size_t number = 2;; ++number) {
       const auto later = values.find("log." + std::to_string(number));

@@ -25,6 +25,8 @@ class LogSource {
   LogSource(const std::string& path, const LogOptions& options);
   /// Bags of one recording, in its order (recordings.hpp).
   LogSource(const std::vector<std::string>& paths, const LogOptions& options);
+  /// A stream that another has read; as much of it as is kept now is the log.
+  LogSource(std::shared_ptr<Spool> stream, const LogOptions& options);
   ~LogSource();
   LogSource(const LogSource&) = delete;
   LogSource& operator=(const LogSource&) = delete;

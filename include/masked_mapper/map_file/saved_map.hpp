@@ -24,6 +24,7 @@ struct MapOrigin {
   };
   std::vector<LaterLog> later_logs = {};
   std::string onto = {};      ///< the map that the logs were to join, path as given; empty: none
+  std::string so_far = {};    ///< of a log that was still coming: how far it was; empty: all of it
   std::string identity = {};  ///< of a map in the making: what tells whether its logs have changed
 };
 
