@@ -10,5 +10,5 @@ find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(SQLite3 3.37 REQUIRED)
-find_package(fastcdr 1.0 REQUIRED)
+find_package(fastcdr REQUIRED)  # 1 or 2
 include(${CMAKE_CURRENT_LIST_DIR}/PackagesByName.cmake)

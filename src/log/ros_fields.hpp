@@ -4,9 +4,6 @@
 // Counts are checked before anything is allocated.
 #pragma once
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/exceptions/Exception.h>
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "fast_cdr.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
 #include "output_bytes.hpp"
 
@@ -120,7 +118,7 @@ class CdrFields {
         size_(size),
         // Read only, but the library knows no such buffer.
         buffer_(const_cast<char*>(reinterpret_cast<const char*>(data)), size),
-        cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
+        cdr_(buffer_, Cdr::DEFAULT_ENDIAN, kDdsCdr) {
     Try([this] { cdr_.read_encapsulation(); });
   }
 
@@ -140,7 +138,7 @@ class CdrFields {
 
   std::size_t Count(std::size_t element_size) {
     const auto count = Number<std::uint32_t>();
-    if (good_ && count > (size_ - cdr_.getSerializedDataLength()) / element_size) good_ = false;
+    if (good_ && count > (size_ - LengthOf(cdr_)) / element_size) good_ = false;
     return good_ ? count : 0;
   }
 
@@ -155,7 +153,7 @@ class CdrFields {
 
   ByteView Bytes() {
     const std::size_t count = Count(1);
-    const ByteView bytes{data_ + cdr_.getSerializedDataLength(), count};
+    const ByteView bytes{data_ + LengthOf(cdr_), count};
     Try([this, count] {
       if (!cdr_.jump(count)) good_ = false;
     });
@@ -185,14 +183,14 @@ class CdrFields {
   template <typename Values, typename T>
   Values Array(std::size_t count, T empty) {
     Values values(count, empty);
-    if (count > 0) Try([this, &values, count] { cdr_.deserializeArray(values.data(), count); });
+    if (count > 0) Try([this, &values, count] { ReadArray(cdr_, values.data(), count); });
     return good_ ? values : Values{};
   }
 
   const unsigned char* data_;
   std::size_t size_;
   eprosima::fastcdr::FastBuffer buffer_;
-  eprosima::fastcdr::Cdr cdr_;
+  Cdr cdr_;
   bool good_ = true;
 };
 

@@ -142,7 +142,7 @@ TEST(Arrows, EachPackageStopsAtItsDoor) {
   const std::vector<Door> doors = {
       {"ceres/", {"optimization"}, kAny},
       {"glog/", {"optimization"}, kAny},
-      {"octomap/", {"rendering", "export"}, 1},
+      {"octomap/", {"rendering"}, 1},
       {"yaml-cpp/", {"text"}, 1},
       {"sqlite3.h", {"map_file", "log"}, 1},
       {"fastcdr/", {"log"}, 1},

@@ -3,7 +3,6 @@
 // spoil.
 #pragma once
 
-#include <fastcdr/Cdr.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -13,18 +12,18 @@
 #include <string>
 #include <vector>
 
-namespace masked_mapper {
+#include "log/fast_cdr.hpp"
 
-using eprosima::fastcdr::Cdr;
+namespace masked_mapper {
 
 /// The bytes of a message whose fields `write` puts.
 inline std::string CdrBytes(const std::function<void(Cdr&)>& write,
                             Cdr::Endianness endianness = Cdr::LITTLE_ENDIANNESS) {
   eprosima::fastcdr::FastBuffer buffer;
-  Cdr cdr(buffer, endianness, Cdr::DDS_CDR);
+  Cdr cdr(buffer, endianness, kDdsCdr);
   cdr.serialize_encapsulation();
   write(cdr);
-  return {cdr.getBufferPointer(), cdr.getSerializedDataLength()};
+  return {BytesOf(cdr), LengthOf(cdr)};
 }
 
 inline void PutHeader(Cdr& cdr, std::int32_t seconds, const std::string& frame) {
