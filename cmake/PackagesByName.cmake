@@ -4,7 +4,10 @@
 
 # `find_package(PCL)` pulls VTK in through `io` and costs seconds at configure time; of PCL the point
 # types and the file formats are used, so the libraries are found by name.
-find_path(PCL_INCLUDE_DIR pcl/point_types.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.12 REQUIRED)
+foreach(minor RANGE 12 29)  # a folder for each version, of which one is installed
+  list(APPEND pcl_folders pcl-1.${minor})
+endforeach()
+find_path(PCL_INCLUDE_DIR pcl/point_types.h PATH_SUFFIXES ${pcl_folders} REQUIRED)
 foreach(component common io)
   if(NOT TARGET pcl_${component}_only)
     find_library(PCL_${component}_LIBRARY pcl_${component} REQUIRED)
