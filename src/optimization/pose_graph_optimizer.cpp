@@ -6,6 +6,7 @@
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
+#include <ceres/version.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -54,7 +55,11 @@ ceres::Solver::Options SolverOptions(const OptimizerOptions& options) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   // As fast as SuiteSparse here, and no BLAS in it: the same bytes whichever BLAS a machine has.
+#if CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR < 2
   solver.sparse_linear_algebra_library_type = ceres::CX_SPARSE;
+#else  // which Ceres has no more
+  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+#endif
   solver.num_threads = 1;  // more may not repeat bit for bit
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
