@@ -11,6 +11,7 @@
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "place_index.hpp"
 #include "visit_agreement.hpp"
 #include "wall_crossings.hpp"
 
@@ -46,7 +47,11 @@ struct Contradicted {
 
 class VisitCheck {
  public:
-  explicit VisitCheck(const BuildingMap& map) : map_(map), visits_(VisitsOf(map)) {}
+  explicit VisitCheck(const BuildingMap& map) : map_(map), visits_(VisitsOf(map)) {
+    for (std::size_t i = 0; i < visits_.size(); ++i) {
+      index_.Add(visits_[i].floor, visits_[i].T_world_robot.Translation(), kSamePlace, i);
+    }
+  }
 
   std::vector<Doubt> Find() const {
     std::vector<Doubt> doubts;
@@ -87,9 +92,8 @@ class VisitCheck {
     std::optional<std::size_t> nearest;
     double least = kSamePlace;
     const Visit& visit = visits_[newer];
-    for (std::size_t i = 0; i < newer; ++i) {
-      if (visit.travelled_m - visits_[i].travelled_m < kOtherVisit) break;
-      if (visits_[i].floor != visit.floor) continue;
+    for (const std::size_t i : index_.Near(visit.floor, visit.T_world_robot.Translation())) {
+      if (i >= newer || visit.travelled_m - visits_[i].travelled_m < kOtherVisit) break;
       const double distance = Distance(visits_[i].T_world_robot, visit.T_world_robot);
       if (distance >= least) continue;
       least = distance;
@@ -134,6 +138,7 @@ class VisitCheck {
 
   const BuildingMap& map_;
   std::vector<Visit> visits_;
+  PlaceIndex index_{kSamePlace};
 };
 
 std::vector<Doubt> DoubtsOfWays(const BuildingMap& map) {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
-#include <unordered_map>
 #include <utility>
+
+#include "place_index.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -52,9 +52,7 @@ class Ways {
   template <class Use>
   void ForEachThrough(const Eigen::Vector2d& one, const Eigen::Vector2d& other, FloorId floor,
                       Use use) const {
-    const auto cell = steps_.find(CellOf(0.5 * (one + other), floor));
-    if (cell == steps_.end()) return;
-    for (const std::size_t i : cell->second) {
+    for (const std::size_t i : steps_.Near(floor, 0.5 * (one + other))) {
       if (Cross(visits_[i - 1].T_world_robot.Translation(), visits_[i].T_world_robot.Translation(),
                 one, other)) {
         use(i);
@@ -63,29 +61,6 @@ class Ways {
   }
 
  private:
-  struct Cell {
-    FloorId floor;
-    int column, row;
-    bool operator==(const Cell& other) const {
-      return floor == other.floor && column == other.column && row == other.row;
-    }
-  };
-  struct HashOfCell {
-    std::size_t operator()(const Cell& cell) const {
-      const auto column = static_cast<std::uint32_t>(cell.column);
-      const auto row = static_cast<std::uint32_t>(cell.row);
-      std::uint64_t mixed = (std::uint64_t{column} << 32U | row) +
-                            0x9E3779B97F4A7C15U * static_cast<std::uint64_t>(cell.floor + 1);
-      mixed = (mixed ^ (mixed >> 29U)) * 0xBF58476D1CE4E5B9U;
-      return static_cast<std::size_t>(mixed ^ (mixed >> 32U));
-    }
-  };
-
-  static Cell CellOf(const Eigen::Vector2d& point, FloorId floor) {
-    return {floor, static_cast<int>(std::floor(point.x() / kCell)),
-            static_cast<int>(std::floor(point.y() / kCell))};
-  }
-
   // Into every cell in which the middle of a piece of wall may lie that the step crosses.
   void Enter(std::size_t i) {
     constexpr double kSpacing = 0.1;
@@ -95,19 +70,12 @@ class Ways {
     const int samples = static_cast<int>(std::ceil(way.norm() / kSpacing));
     for (int sample = 0; sample <= samples; ++sample) {
       const Eigen::Vector2d at = from + way * (static_cast<double>(sample) / std::max(1, samples));
-      const Cell first = CellOf(at.array() - kReach, visits_[i].floor);
-      const Cell last = CellOf(at.array() + kReach, visits_[i].floor);
-      for (int column = first.column; column <= last.column; ++column) {
-        for (int row = first.row; row <= last.row; ++row) {
-          std::vector<std::size_t>& steps = steps_[{first.floor, column, row}];
-          if (steps.empty() || steps.back() != i) steps.push_back(i);
-        }
-      }
+      steps_.Add(visits_[i].floor, at, kReach, i);
     }
   }
 
   const std::vector<Visit>& visits_;
-  std::unordered_map<Cell, std::vector<std::size_t>, HashOfCell> steps_;
+  PlaceIndex steps_{kCell};
 };
 
 /// Points of one scan in the world, in the order of its beams.
