@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scan_matching/box_scene.hpp"
@@ -67,6 +68,57 @@ TEST(FloorSearch, NoPlaceByBruteForceFitsBetter) {
   }
 }
 
+// All that fits is found, or something better no farther away than a box of poses and what counts
+// as one place with it.
+TEST(FloorSearch, AllThatFitsIsFoundOrSomethingBetterNearby) {
+  const BoxScene room = FurnishedRoom();
+  const FloorSearchOptions options = Small();
+  const FloorSearch search(SeenFrom(room, {1.0, 0.5, 0.3}, true), options);
+  const auto points = search.Thinned(SeenFrom(room, {0.2, 1.0, 2.0}, false));
+  constexpr double kLeast = 0.4;
+  constexpr double kApart = 0.5;  // m
+  constexpr double kApartDeg = 8.0;
+  const auto all = search.FindAll(points, kLeast, kApart, kApartDeg);
+  const auto best = search.Find(points);
+  ASSERT_TRUE(best);
+  ASSERT_GT(all.size(), 1U);
+  EXPECT_NEAR(all.front().score, best->score, 1e-3);
+  const auto turned = [](const Pose2& a, const Pose2& b) {
+    return std::abs(WrapAngle(a.theta - b.theta));
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_GE(all[i].score, kLeast);
+    for (std::size_t k = 0; k < i; ++k) {
+      EXPECT_LE(all[i].score, all[k].score);
+      EXPECT_TRUE(Distance(all[i].T_world_place, all[k].T_world_place) >= kApart ||
+                  turned(all[i].T_world_place, all[k].T_world_place) >= DegToRad(kApartDeg));
+    }
+  }
+  const double box_m = std::hypot(3.2, 3.2) + kApart;  // eight cells, and twice the distance
+  int fitting = 0;
+  for (double x = -6.0; x <= 6.0; x += options.resolution_m) {
+    for (double y = -6.0; y <= 6.0; y += options.resolution_m) {
+      for (double deg = -180.0; deg < 180.0; deg += options.angle_step_deg) {
+        const Pose2 pose{x, y, DegToRad(deg)};
+        double sum = 0.0;
+        for (const Eigen::Vector2d& point : points) sum += search.ValueAt(pose * point);
+        const double score = sum / static_cast<double>(points.size());
+        if (score < kLeast + 0.05) continue;  // another lattice rounds otherwise
+        ++fitting;
+        EXPECT_TRUE(std::any_of(all.begin(), all.end(),
+                                [&](const PlaceFit& fit) {
+                                  return fit.score > score - 0.05 &&
+                                         Distance(fit.T_world_place, pose) <= box_m &&
+                                         turned(fit.T_world_place, pose) <=
+                                             DegToRad(45.0 + kApartDeg);
+                                }))
+            << x << " " << y << " " << deg;
+      }
+    }
+  }
+  EXPECT_GT(fitting, 1);
+}
+
 TEST(FloorSearch, NearAGuessOnlyThereIsLooked) {
   const BoxScene room = FurnishedRoom();
   const FloorSearch search(SeenFrom(room, {1.0, 0.5, 0.3}, true), Small());
@@ -83,6 +135,7 @@ TEST(FloorSearch, NothingIsFoundInNothing) {
   const FloorSearch nothing({}, {});
   EXPECT_FALSE(nothing.HasFloor());
   EXPECT_FALSE(nothing.Find({{1.0, 2.0}}));
+  EXPECT_TRUE(nothing.FindAll({{1.0, 2.0}}, 0.5, 1.0, 8.0).empty());
   EXPECT_EQ(nothing.FindNear({{1.0, 2.0}}, {1.0, 1.0, 0.0}, 1.0, 1.0).score, 0.0);
   const FloorSearch search(SeenFrom(FurnishedRoom(), {}, true), {});
   EXPECT_FALSE(search.Find({}));
