@@ -10,7 +10,6 @@ namespace masked_mapper {
 namespace {
 
 constexpr double kFirstSearch = 2.0;  // m of the way; before it a scan or two are no place
-constexpr double kMostBetween = 8.0;  // m of the way between searches
 constexpr double kSearched = 16.0;    // m of the way that are looked for
 constexpr double kFollowed = 4.0;     // m of the way by which a hypothesis is held in place
 constexpr double kAlike = 0.12;       // of score; what fits that much worse is no rival
@@ -29,6 +28,7 @@ void Hypotheses::Restart(std::size_t scan) {
   search_was_complete_ = false;
   whereabouts_.clear();
   climbed_.reset();
+  elsewhere_nats_ = 0.0;
 }
 
 void Hypotheses::Suggest(FloorId floor, const Pose2& T_world_odom, double prior_nats) {
@@ -78,6 +78,12 @@ void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t
   if (after.empty() && !hypotheses_.empty() && climb_m) {
     climbed_ = Climb{*climb_m, sigma_m};
     return;
+  }
+  // Floors may look alike, rides do not: what is found from here on, and was not come to by the
+  // ride, must have been elsewhere before, against which all speaks that was seen there.
+  if (climb_m && !after.empty() && search_was_complete_) {
+    const double known = std::clamp(Nats(hypotheses_.front()), 0.0, options_.believed_nats);
+    elsewhere_nats_ = std::max(elsewhere_nats_, known);
   }
   hypotheses_ = std::move(after);
   Whereabouts about;
@@ -130,8 +136,9 @@ void Hypotheses::Step(Stretch& stretch, std::size_t scan,
     Judge(hypothesis, known);
   }
   if (stretch.length_m() >= next_search_m_) {
+    // A search costs what the map is large; in the end each stretch is looked for but once.
     next_search_m_ =
-        stretch.length_m() + std::clamp(0.25 * stretch.length_m(), kFirstSearch, kMostBetween);
+        stretch.length_m() + std::clamp(0.25 * stretch.length_m(), kFirstSearch, kSearched);
     if (T_world_robot) SearchAround(stretch, *T_world_robot);
     Search(stretch);
   }
@@ -211,7 +218,7 @@ void Hypotheses::Search(const Stretch& stretch) {
              thinned, std::max(kLeastScore, best - kAlike), kPlaceM, kPlaceDeg)) {
       Hypothesis hypothesis;
       hypothesis.floor = id;
-      hypothesis.prior_nats = -map_.LogPlaces();
+      hypothesis.prior_nats = -map_.LogPlaces() - elsewhere_nats_;
       const double within_m = 0.5;
       const PlaceFit fine = floor.fine().FindNear(fine_points, coarse.T_world_place, within_m, 2.0);
       hypothesis.T_world_odom = floor.fine().Climb(fine_points, fine.T_world_place).T_world_place *

@@ -97,6 +97,7 @@ class Hypotheses {
   Whereabouts whereabouts_;       ///< floors on which it was suggested
   double next_search_m_ = 0.0;
   bool search_was_complete_ = false;
+  double elsewhere_nats_ = 0.0;  ///< against what no ride came to; before anything was seen
   int searches_ = 0;
 };
 

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "localization/hypotheses.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+#include "localization/room_drive.hpp"
+#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
+
+namespace masked_mapper {
+namespace {
+
+constexpr int kScans = 320;      // once round, on each floor
+constexpr double kStorey = 3.0;  // m
+
+/// With a wall on one side of it, so that it is not taken for itself turned round.
+Walls OneSidedRoom() {
+  Walls room = Room(24.0, 16.0);
+  room.push_back({{17.0, 2.0}, {17.0, 13.0}});
+  room.push_back({{13.5, 11.0}, {17.0, 13.0}});
+  return room;
+}
+
+/// Three floors, one as the other.
+BuildingMap MapOfTower(const Walls& room) {
+  FloorTimeline floors;
+  floors.levels.clear();
+  floors.intervals.clear();
+  for (std::size_t level = 0; level < 3; ++level) {
+    FloorLevel known;
+    known.elevation = kStorey * static_cast<double>(level);
+    floors.levels.push_back(known);
+    FloorInterval interval;
+    interval.start = 0.2 * kScans * static_cast<double>(level);
+    interval.level = level;
+    floors.intervals.push_back(interval);
+  }
+  MappingOptions options;
+  options.motion.source = MotionSource::kFused;
+  MaskedMapper mapper("always", options, floors);
+  for (const LaserScan& scan : Drive(room, 0, 3 * kScans, 0.0)) mapper.Observe(scan);
+  return mapper.Finish();
+}
+
+SearchableFloorOptions Usual() {
+  SearchableFloorOptions options;
+  options.fine = FineSearchOptions();
+  options.seen.resolution_m = 0.2;
+  options.seen.min_hits = 1;
+  return options;
+}
+
+class HypothesesTest : public testing::Test {
+ protected:
+  void SetUp() override { hypotheses_.Restart(0); }
+
+  /// Drives on by so many scans; whether a place is believed at the end.
+  const Hypothesis* DriveOn(int scans) {
+    const std::vector<LaserScan> log = Drive(room_, 130, driven_ + scans, 1e5);
+    for (int i = driven_; i < driven_ + scans; ++i) {
+      const LaserScan& scan = log[static_cast<std::size_t>(i)];
+      stretch_.Add(scan, *scan.T_odom_robot);
+      if (i % 10 == 9) hypotheses_.Step(stretch_, static_cast<std::size_t>(i), std::nullopt);
+    }
+    driven_ += scans;
+    return hypotheses_.Believed();
+  }
+
+  Walls room_ = OneSidedRoom();
+  BuildingMap map_ = MapOfTower(room_);
+  KnownMap known_{map_, Usual()};
+  Hypotheses hypotheses_{known_, EvidenceOptions()};
+  Stretch stretch_;
+  int driven_ = 0;
+};
+
+// Floors that look alike are told apart by a ride alone; then they stay so, though all of them are
+// found again.
+TEST_F(HypothesesTest, OfAlikeFloorsARideTellsWhich) {
+  EXPECT_EQ(DriveOn(240), nullptr);
+  ASSERT_GE(hypotheses_.all().size(), 3U);
+  hypotheses_.Ride(2.0 * kStorey, 0.2, static_cast<std::size_t>(driven_));
+  const Hypothesis* found = DriveOn(240);
+  ASSERT_NE(found, nullptr) << hypotheses_.Description();
+  EXPECT_EQ(found->floor, 2);
+}
+
+// One storey up leaves two floors open.
+TEST_F(HypothesesTest, ARideThatMayHaveEndedOnTwoFloorsTellsNeither) {
+  EXPECT_EQ(DriveOn(240), nullptr);
+  hypotheses_.Ride(kStorey, 0.2, static_cast<std::size_t>(driven_));
+  EXPECT_EQ(DriveOn(240), nullptr);
+}
+
+}  // namespace
+}  // namespace masked_mapper
