@@ -43,11 +43,14 @@ class Wheels {
  public:
   explicit Wheels(const std::vector<WheelPose>& poses) : poses_(poses) {}
 
-  std::optional<WheelPose> At(double stamp) const {
-    const auto after =
+  std::optional<WheelPose> At(double stamp) const { return At(stamp, IndexBehind(stamp)); }
+
+  /// Of the first pose not before a stamp.
+  std::size_t IndexBehind(double stamp) const {
+    const auto behind =
         std::lower_bound(poses_.begin(), poses_.end(), stamp,
                          [](const WheelPose& pose, double value) { return pose.stamp < value; });
-    return At(stamp, static_cast<std::size_t>(after - poses_.begin()));
+    return static_cast<std::size_t>(behind - poses_.begin());
   }
 
   /// The same of the heading alone, looked for from `near` on, which becomes the pose behind it: it
@@ -117,7 +120,13 @@ std::vector<TurnPair> TurnsOf(const std::vector<StretchPair>& pairs) {
 class TurnsByClock {
  public:
   TurnsByClock(const std::vector<Stretch>& stretches, const Wheels& wheels)
-      : stretches_(stretches), wheels_(wheels), near_(stretches.size(), {0, 0}) {}
+      : stretches_(stretches), wheels_(wheels) {
+    near_.reserve(stretches.size());
+    for (const Stretch& stretch : stretches) {
+      near_.emplace_back(wheels.IndexBehind(stretch.span.start),
+                         wheels.IndexBehind(stretch.span.end));
+    }
+  }
 
   const std::vector<TurnPair>& At(double ahead_s) {
     turns_.clear();
