@@ -191,8 +191,9 @@ TEST(MapCommand, AnInterruptLeavesNothing) {
   const std::vector<std::string> before = folder.Listing();
   RunSettings settings;
   settings.interrupt = true;
-  const Ran ran =
-      RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--mask", "always"}, settings);
+  const Ran ran = RunProgram({"map", folder / "ring.log", "-o", folder / "out", "--mask", "always",
+                              "--checkpoint", "3600"},
+                             settings);
   EXPECT_EQ(ran.code, 1) << ran.err;
   EXPECT_TRUE(Contains(ran.err, "interrupted")) << ran.err;
   EXPECT_EQ(folder.Listing(), before);
