@@ -33,25 +33,27 @@ class GridDrive {
   }
 
   // Matches of a node with those of earlier rounds at its place and next to it.
-  std::vector<Hypothesis> Matches(NodeId a) {
+  std::vector<Closure> Matches(NodeId newer) {
     std::uniform_int_distribution<int> ten(0, 9);
-    std::vector<Hypothesis> matches;
-    for (NodeId round = a - kSide * kSide; round >= 0; round -= kSide * kSide) {
-      for (const NodeId b : {round, round + 1}) {
+    std::vector<Closure> matches;
+    for (NodeId round = newer - kSide * kSide; round >= 0; round -= kSide * kSide) {
+      for (const NodeId older : {round, round + 1}) {
         if (matches.size() >= 5) return matches;
-        Hypothesis match;
-        match.a = a;
-        match.b = b;
-        match.T_a_b = Measured(a, b, 1.0);
-        if (ten(random_) == 0) match.T_a_b.mean = match.T_a_b.mean * Pose2{1.0, 1.0, 0.3};
+        Closure match;
+        match.older = older;
+        match.newer = newer;
+        match.T_older_newer = Measured(older, newer, 1.0);
+        if (ten(random_) == 0) {
+          match.T_older_newer.mean = match.T_older_newer.mean * Pose2{1.0, 1.0, 0.3};
+        }
         matches.push_back(match);
       }
     }
     return matches;
   }
 
-  void Close(const Hypothesis& match) {
-    graph_.AddEdge({match.a, match.b, match.T_a_b, EdgeKind::kClosure});
+  void Close(const Closure& match) {
+    graph_.AddEdge({match.older, match.newer, match.T_older_newer, EdgeKind::kClosure});
   }
 
   const PoseGraph& graph() const { return graph_; }
@@ -76,7 +78,7 @@ class GridDrive {
 void Project(benchmark::State& state) {
   GridDrive drive(static_cast<int>(state.range(0)));
   for (NodeId a = 900; a < static_cast<NodeId>(state.range(0)); a += 3) {
-    for (const Hypothesis& match : drive.Matches(a)) drive.Close(match);
+    for (const Closure& match : drive.Matches(a)) drive.Close(match);
   }
   const auto source = static_cast<NodeId>(state.range(0) - 1);
   for (auto _ : state) benchmark::DoNotOptimize(DijkstraProjection(drive.graph(), source));
@@ -101,17 +103,20 @@ void JudgeDrive(benchmark::State& state, const ValidatorOptions& options) {
     state.PauseTiming();
     GridDrive drive(static_cast<int>(state.range(0)));
     LoopValidator validator(options);
+    std::vector<Closure> closures;
     judged = validated = 0.0;
     for (NodeId a = 900; a < static_cast<NodeId>(state.range(0)); a += 10) {
-      const std::vector<Hypothesis> matches = drive.Matches(a);
-      state.ResumeTiming();
-      const std::vector<HypothesisId> valid = validator.Judge(drive.graph(), matches);
-      state.PauseTiming();
-      judged += static_cast<double>(matches.size());
-      validated += static_cast<double>(valid.size());
-      for (const HypothesisId id : valid) {
-        drive.Close(validator.hypotheses()[static_cast<std::size_t>(id)]);
+      std::vector<ClosureId> ids;
+      for (const Closure& match : drive.Matches(a)) {
+        ids.push_back(static_cast<ClosureId>(closures.size()));
+        closures.push_back(match);
       }
+      state.ResumeTiming();
+      const std::vector<ClosureId> valid = validator.Judge(drive.graph(), ids, closures);
+      state.PauseTiming();
+      judged += static_cast<double>(ids.size());
+      validated += static_cast<double>(valid.size());
+      for (const ClosureId id : valid) drive.Close(closures[static_cast<std::size_t>(id)]);
     }
     state.ResumeTiming();
   }
