@@ -164,11 +164,7 @@ int RunExport(const ExportArguments& arguments) {
   SingleExport wanted;
   wanted.format = FormatNamed(arguments.format);
   wanted.heights = arguments.heights;
-  const fs::path file = fs::absolute(arguments.file);
-  if (!file.has_filename()) throw InputError(arguments.file + ": not the name of a file");
-  if (fs::exists(file) && !fs::is_regular_file(file)) {
-    throw InputError(arguments.file + " exists and is not a file");
-  }
+  const fs::path file = FileToWrite(arguments.file);
   const SavedMap map = ReadMap(arguments);
   if (!arguments.floor.empty()) {
     wanted.floor = FloorOfLabel(map.result.graph.floors(), arguments.floor);

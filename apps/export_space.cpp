@@ -136,11 +136,7 @@ void CheckSpaceRequest(const SpaceRequest& request) {
   if (!(request.heights.low_m <= request.heights.high_m)) {
     throw InputError("the lower height must not be above the upper");
   }
-  const fs::path file = fs::absolute(request.file);
-  if (!file.has_filename()) throw InputError(request.file + ": not the name of a file");
-  if (fs::exists(file) && !fs::is_regular_file(file)) {
-    throw InputError(request.file + " exists and is not a file");
-  }
+  FileToWrite(request.file);
 }
 
 int ExportSpace(const SavedMap& map, const SpaceRequest& wanted) {

@@ -121,17 +121,8 @@ void PrintTable(const BuildingMap& map, const Route& route, const Place& asked_t
   }
 }
 
-/// A file of a user's that is no report is not replaced.
-void CheckReport(const std::filesystem::path& file) {
-  if (!file.has_filename()) throw InputError(file.string() + ": not the name of a file");
-  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
-    throw InputError(file.string() + " exists and is not a file");
-  }
-}
-
 void WriteReport(const SavedMap& map, const std::vector<OccupancyGrid>& grids, const Route& route,
-                 const std::string& path) {
-  const std::filesystem::path file = std::filesystem::absolute(path);
+                 const std::filesystem::path& file) {
   const AsideFolder aside(file);
   const std::filesystem::path written = aside.path() / file.filename();
   WriteRouteReport(map.result, DescriptionOf(map.origin, map.result), grids,
@@ -140,7 +131,8 @@ void WriteReport(const SavedMap& map, const std::vector<OccupancyGrid>& grids, c
 }
 
 int RunRoute(const RouteArguments& arguments) {
-  if (!arguments.report.empty()) CheckReport(std::filesystem::absolute(arguments.report));
+  const std::filesystem::path report =
+      arguments.report.empty() ? std::filesystem::path() : FileToWrite(arguments.report);
   SavedMap map = ReadMapFile(MapFileOf(arguments.map));
   for (const std::string& line : map.left_aside) {
     if (!arguments.quiet) std::cerr << "warning: " << arguments.map << ": " << line << "\n";
@@ -155,9 +147,7 @@ int RunRoute(const RouteArguments& arguments) {
   SettleThreads(map.origin.options);
   const std::vector<OccupancyGrid> grids = RenderFloors(map.result, map.origin.options.grid);
   const Route route = FindRoute(map.result, grids, from, to, options);
-  if (!arguments.report.empty() && route.is_found) {
-    WriteReport(map, grids, route, arguments.report);
-  }
+  if (!report.empty() && route.is_found) WriteReport(map, grids, route, report);
   (arguments.json ? PrintJson : PrintTable)(map.result, route, to);
   return 0;
 }
