@@ -245,7 +245,8 @@ class DriveJoiner {
     Lay(*found.placement, older, newer);
     const std::size_t offered_from = map_.closures.size();
     LoopClosureOptions options = closures_;
-    options.refine = AreLaidOutByScans(older) && AreLaidOutByScans(newer);
+    options.laid_out_by_scans = AreLaidOutByScans(older) && AreLaidOutByScans(newer);
+    options.refine = options.laid_out_by_scans;
     LoopCloser closer(options, map_, [this](NodeId node) { return SurroundingsOf(node); });
     std::size_t closures = 0;
     for (const std::size_t drive : newer) {

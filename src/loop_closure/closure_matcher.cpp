@@ -29,12 +29,12 @@ std::vector<Closure> ClosureMatcher::Match(const std::vector<ClosureOffer>& offe
     closure.newer = offer.newer;
     closure.mahalanobis = offer.mahalanobis;
     closure.score = matches[i].score;
-    const bool by_match = guess == GuessIs::kAWindow || !refine_;
+    const bool by_match = guess != GuessIs::kAsGoodAsAMatch || !refine_;
     closure.T_older_newer = by_match ? matches[i].T_reference_query : offer.T_older_newer;
     // 2. Threshold.
     if (matches[i].outcome == MatchOutcome::kMatched) {
       RefineAndBelieve(*offer.points_in_newer, closure);
-      if (!by_match && closure.reason == ClosureReason::kAlikeAlongALine) {
+      if (guess != GuessIs::kAWindow && closure.reason == ClosureReason::kAlikeAlongALine) {
         // The way says how far along; it is not counted again in the closure.
         Believe(
             (closure.T_older_newer.covariance.inverse() + offer.T_older_newer.covariance.inverse())

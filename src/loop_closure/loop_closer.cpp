@@ -18,7 +18,7 @@ LoopCloser::LoopCloser(const LoopClosureOptions& options, BuildingMap& map,
       reference_(std::move(reference)),
       matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
       late_matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
-      validator_(Settled(options.validator, options.refine)),
+      validator_(Settled(options.validator, options.laid_out_by_scans)),
       optimizer_(options.optimizer) {
   for (const Closure& closure : map.closures) {
     if (closure.reason == ClosureReason::kForbiddenByHand) {
@@ -71,6 +71,21 @@ void LoopCloser::CloseLate() {
   const StageTimer timer(map_.seconds.matching);
   CloseOpenVotes();
   CloseOpenRevisits();
+}
+
+// Wheels alone leave the map sure only about what is closed already. What closes there makes the
+// next places sure, and so on along the way passed twice.
+void LoopCloser::CloseLateByWheels() {
+  constexpr int kMostRounds = 50;
+  for (int round = 0; round < kMostRounds; ++round) {
+    std::size_t entered = 0;
+    {
+      const StageTimer timer(map_.seconds.matching);
+      entered = CloseOpenRevisits();
+    }
+    if (entered == 0) return;
+    Solve();
+  }
 }
 
 // What too few loops spoke for while the map was being made is looked at once more in the map that
@@ -136,6 +151,12 @@ std::optional<UncertainPose2> LoopCloser::SureWay(NodeId from, NodeId to) const 
   return std::nullopt;
 }
 
+// As a loop agrees in the validator.
+bool LoopCloser::AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const {
+  return MahalanobisFromIdentity(Inverse(T_older_newer) * closure.T_older_newer) <
+         options_.validator.max_loop_error;
+}
+
 void LoopCloser::EnterLate(ClosureId id) {
   Closure& closure = map_.closures[static_cast<std::size_t>(id)];
   closure.state = ClosureState::kValidated;
@@ -146,18 +167,20 @@ void LoopCloser::EnterLate(ClosureId id) {
 // Corridors between masked places, passed again: what no mask offered is offered now, where the map
 // has two nodes at one place and no walk along the graph says so. A sure way through the graph has
 // to vouch for it, as in the validator.
-void LoopCloser::CloseOpenRevisits() {
+std::size_t LoopCloser::CloseOpenRevisits() {
   const std::vector<Edge>& edges = map_.graph.edges();
   const bool any_closed = std::any_of(
       edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; });
-  if (!any_closed) return;  // dead reckoning stays what it is
+  if (!any_closed) return 0;  // dead reckoning stays what it is
   const OpenRevisits revisits(map_.graph, options_.polish.revisits);
+  std::size_t entered = 0;
   for (NodeId newer = 0; static_cast<std::size_t>(newer) < map_.graph.nodes().size(); ++newer) {
     std::vector<NodeId> open = revisits.Of(newer);
     while (!open.empty()) {
       const NodeId older = open.front();
       open.erase(open.begin());
-      if (!CloseRevisit(newer, older)) continue;
+      if (!tried_.emplace(older, newer).second || !CloseRevisit(newer, older)) continue;
+      ++entered;
       // What closed here may have joined the others, too.
       const std::vector<NodeId> still_open = revisits.Of(newer);
       const auto is_joined = [&](NodeId node) {
@@ -166,6 +189,7 @@ void LoopCloser::CloseOpenRevisits() {
       open.erase(std::remove_if(open.begin(), open.end(), is_joined), open.end());
     }
   }
+  return entered;
 }
 
 bool LoopCloser::CloseRevisit(NodeId newer, NodeId older) {
@@ -176,14 +200,17 @@ bool LoopCloser::CloseRevisit(NodeId newer, NodeId older) {
   const double mahalanobis =
       MahalanobisDistance(sure_way->mean.Translation(), sure_way->covariance.topLeftCorner<2, 2>(),
                           options_.candidates.match_range_m);
+  const GuessIs guess =
+      options_.laid_out_by_scans ? GuessIs::kAsGoodAsAMatch : GuessIs::kASureWindow;
   // The robot may have come the other way: its scan then shows what lies behind that of the older.
   const ClosureOffer offer{
       older,          newer, *sure_way, mahalanobis, late_matcher_.submaps().PointsAround(older),
       points_in_newer};
-  Closure closure = late_matcher_.Match({offer}, GuessIs::kAsGoodAsAMatch).front();
+  Closure closure = late_matcher_.Match({offer}, guess).front();
   const bool believed = closure.reason == ClosureReason::kTooFewVotes;
   const bool refined = believed || closure.reason == ClosureReason::kAlikeAlongALine;
-  const bool fits = FitsTheMap(closure);
+  const bool fits =
+      options_.laid_out_by_scans ? FitsTheMap(closure) : AgreesWith(*sure_way, closure);
   if (refined && !fits) closure.reason = ClosureReason::kDisagreesWithTheMap;
   map_.closures.push_back(std::move(closure));
   if (!believed || !fits) return false;
@@ -219,10 +246,13 @@ void LoopCloser::Audit() {
 }
 
 void LoopCloser::Finish() {
+  tried_.clear();
   Solve();
-  if (options_.refine) {
+  if (options_.laid_out_by_scans) {
     CloseLate();
     Solve();
+  } else {
+    CloseLateByWheels();
   }
   Audit();
 }

@@ -19,6 +19,7 @@
 #include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "wheels_by_closures.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -119,8 +120,10 @@ class LogDrive {
     progress_.Stage("mapping");
     DriveThrough();
     BuildingMap result = mapper_->Finish();
-    if (HasUnknownFloors(survey_.floors) && FloorsWereJoined(result)) {
-      progress_.Stage("mapping, floors joined");
+    const bool joined = HasUnknownFloors(survey_.floors) && FloorsWereJoined(result);
+    const bool learnt = WheelsWereLearnt(result);
+    if (joined || learnt) {
+      progress_.Stage(joined ? "mapping, floors joined" : "mapping, wheels known");
       spent_ += result.seconds;  // what is driven again costs twice
       Begin();
       if (checkpoints_ != nullptr) checkpoints_->StartOver();
@@ -160,6 +163,7 @@ class LogDrive {
   }
 
   void Begin() {
+    if (survey_.wheels) settled_.motion.odometry = *survey_.wheels;
     mapper_.emplace(mask_, settled_, survey_.floors);
     log_ = ReadStraightened(
         source_, {survey_.sweep_s_per_rad, settled_.motion.source != MotionSource::kScans});
@@ -176,6 +180,18 @@ class LogDrive {
     survey_.floors = joining.floors;
     if (!joining.any_joined) return false;
     survey_.warnings.insert(survey_.warnings.end(), joining.notes.begin(), joining.notes.end());
+    return true;
+  }
+
+  // By wheels alone, how good they are decides what may close, and closures tell how good they are.
+  bool WheelsWereLearnt(const BuildingMap& map) {
+    if (settled_.motion.source != MotionSource::kOdometry || survey_.wheels) return false;
+    const std::optional<LearntWheels> learnt =
+        WheelsByClosures(WheelTies(map), settled_.motion.odometry);
+    if (!learnt) return false;
+    survey_.wheels = learnt->noise;
+    survey_.mending.travel_factor *= learnt->travel_factor;
+    source_.Mend(survey_.mending);
     return true;
   }
 

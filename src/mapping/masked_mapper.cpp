@@ -6,15 +6,29 @@
 #include <cmath>
 #include <utility>
 
+#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 
 namespace masked_mapper {
 namespace {
 
-// Wheels alone lay out no surroundings against which a match could be refined.
+// Wheels alone lay out surroundings against which a match could be refined only where they are
+// known to be that good.
+bool AreSureOfSurroundings(const DeadReckoningOptions& wheels, double half_length_m) {
+  constexpr double kMost = 0.05;  // m
+  constexpr double kMostDeg = 1.0;
+  const double root = std::sqrt(half_length_m);
+  return wheels.sigma_position_per_sqrt_m * root <= kMost &&
+         wheels.sigma_heading_deg_per_sqrt_m * root <= kMostDeg &&
+         wheels.sigma_heading_deg_per_sqrt_rad * std::sqrt(kPi) <= kMostDeg;
+}
+
 MappingOptions Settled(MappingOptions options) {
-  options.closures.refine = options.motion.source != MotionSource::kOdometry;
+  LoopClosureOptions& closures = options.closures;
+  closures.laid_out_by_scans = options.motion.source != MotionSource::kOdometry;
+  closures.refine = closures.laid_out_by_scans ||
+                    AreSureOfSurroundings(options.motion.odometry, closures.submaps.half_length_m);
   return options;
 }
 

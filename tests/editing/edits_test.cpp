@@ -17,7 +17,7 @@ class EditsTest : public testing::Test {
   EditsTest() : drive_(1.2, 0.5) {
     MappingOptions options;
     options.motion.source = MotionSource::kOdometry;
-    options.closures.refine = false;
+    options.closures.refine = options.closures.laid_out_by_scans = false;
     floors_.levels.push_back({"up", 3.0, 0.1, true, true, ""});
     MaskedMapper mapper("never", options, floors_);
     for (const LaserScan& scan : drive_.scans) mapper.Observe(scan);

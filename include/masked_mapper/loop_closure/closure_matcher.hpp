@@ -34,12 +34,13 @@ struct ClosureOffer {
 /// What the guess of an offer is worth.
 enum class GuessIs {
   kAWindow,        ///< where to search; the match stands for itself
+  kASureWindow,    ///< where to search; it may tell how far along a corridor
   kAsGoodAsAMatch  ///< from an optimised map: it is refined itself, and may tell along a corridor
 };
 
 class ClosureMatcher {
  public:
-  /// `map` outlives this. Without `refine`, stage 3 is left out: wheels alone lay out no submaps.
+  /// `map` outlives this. Without `refine`, stage 3 is left out.
   ClosureMatcher(const MatcherOptions& matcher, const SubmapOptions& submaps,
                  const AmbiguityOptions& ambiguity, bool refine, const BuildingMap& map);
 

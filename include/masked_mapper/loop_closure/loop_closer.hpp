@@ -31,7 +31,10 @@ struct PolishOptions {
 struct LoopClosureOptions {
   CandidateOptions candidates;
   MatcherOptions matcher;
-  /// Whether matches are refined against submaps. Not where wheels alone lay out the submaps.
+  /// Whether scans laid out the motion; if not, wheels alone did, and the map is sure only about
+  /// what is closed.
+  bool laid_out_by_scans = true;
+  /// Whether matches are refined against submaps, which the motion lays out well enough for that.
   bool refine = true;
   SubmapOptions submaps;
   AmbiguityOptions ambiguity;
@@ -69,9 +72,11 @@ class LoopCloser {
   void Solve();
   void CloseLate();
   void CloseOpenVotes();
-  void CloseOpenRevisits();
+  void CloseLateByWheels();
+  std::size_t CloseOpenRevisits();
   bool CloseRevisit(NodeId newer, NodeId older);
   bool CanBeOne(const Closure& closure) const;
+  bool AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const;
   bool FitsTheMap(const Closure& closure) const;
   Pose2 MapBetween(NodeId from, NodeId to) const;
   std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
@@ -86,6 +91,7 @@ class LoopCloser {
   LoopValidator validator_;
   PoseGraphOptimizer optimizer_;
   std::set<std::pair<NodeId, NodeId>> forbidden_;  ///< older, newer; by hand
+  std::set<std::pair<NodeId, NodeId>> tried_;      ///< older, newer; late
 };
 
 }  // namespace masked_mapper

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct LogSurvey {
   FloorTimeline floors;
   FloorSource floor_source = FloorSource::kNone;  ///< what the floors were found by
   std::vector<SensorFinding> findings;
-  OdometryMending mending;    ///< of what scans found out of the wheels; the source is mended so
+  OdometryMending mending;  ///< of what scans found out of the wheels; the source is mended so
+  std::optional<DeadReckoningOptions> wheels;  ///< as closures found them, where that was asked
   bool reconsidered = false;  ///< all of the log said otherwise of its sensors than its beginning
   std::vector<std::string> warnings;
 };
