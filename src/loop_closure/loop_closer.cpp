@@ -70,18 +70,20 @@ void LoopCloser::Solve() {
 void LoopCloser::CloseLate() {
   const StageTimer timer(map_.seconds.matching);
   CloseOpenVotes();
-  CloseOpenRevisits();
+  NodePairs tried;
+  CloseOpenRevisits(tried);
 }
 
-// Wheels alone leave the map sure only about what is closed already. What closes there makes the
-// next places sure, and so on along the way passed twice.
+// Wheels alone leave the map sure only about what is closed already. What closes moves the map, and
+// brings others near that were not; each pair is tried once.
 void LoopCloser::CloseLateByWheels() {
   constexpr int kMostRounds = 50;
+  NodePairs tried;
   for (int round = 0; round < kMostRounds; ++round) {
     std::size_t entered = 0;
     {
       const StageTimer timer(map_.seconds.matching);
-      entered = CloseOpenRevisits();
+      entered = CloseOpenRevisits(tried);
     }
     if (entered == 0) return;
     Solve();
@@ -167,7 +169,7 @@ void LoopCloser::EnterLate(ClosureId id) {
 // Corridors between masked places, passed again: what no mask offered is offered now, where the map
 // has two nodes at one place and no walk along the graph says so. A sure way through the graph has
 // to vouch for it, as in the validator.
-std::size_t LoopCloser::CloseOpenRevisits() {
+std::size_t LoopCloser::CloseOpenRevisits(NodePairs& tried) {
   const std::vector<Edge>& edges = map_.graph.edges();
   const bool any_closed = std::any_of(
       edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; });
@@ -179,7 +181,7 @@ std::size_t LoopCloser::CloseOpenRevisits() {
     while (!open.empty()) {
       const NodeId older = open.front();
       open.erase(open.begin());
-      if (!tried_.emplace(older, newer).second || !CloseRevisit(newer, older)) continue;
+      if (!tried.emplace(older, newer).second || !CloseRevisit(newer, older)) continue;
       ++entered;
       // What closed here may have joined the others, too.
       const std::vector<NodeId> still_open = revisits.Of(newer);
@@ -246,7 +248,6 @@ void LoopCloser::Audit() {
 }
 
 void LoopCloser::Finish() {
-  tried_.clear();
   Solve();
   if (options_.laid_out_by_scans) {
     CloseLate();

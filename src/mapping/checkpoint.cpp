@@ -82,13 +82,6 @@ void Serialize(Archive& archive, OdometryMending& mending) {
 }
 
 template <class Archive>
-void Serialize(Archive& archive, DeadReckoningOptions& wheels) {
-  archive(wheels.sigma_position_per_sqrt_m, wheels.sigma_heading_deg_per_sqrt_m,
-          wheels.sigma_heading_deg_per_sqrt_rad, wheels.sigma_heading_deg_per_sqrt_s,
-          wheels.sigma_position_per_step);
-}
-
-template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
   archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
           survey.median_turn_rad, survey.median_period_s, survey.sweep_s_per_rad,

@@ -6,6 +6,7 @@
 
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "masked_mapper/motion/wheel_noise.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -13,53 +14,28 @@ namespace {
 constexpr double kLongestWay = 10.0;  // m by wheels along a tie
 constexpr double kMostTurn = 0.3;     // rad along a straight one, all turns taken positive
 
-// What the wheels counted up to each node.
-class WheelCounts {
- public:
-  explicit WheelCounts(const BuildingMap& map) {
-    std::vector<double> travelled_m{0.0};
-    std::vector<double> turned_rad{0.0};
-    std::vector<double> heading_rad{0.0};
-    const std::vector<TrajectoryPose>& poses = map.trajectory;
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-      const Pose2 step = Between(poses[i - 1].T_odom_robot, poses[i].T_odom_robot);
-      travelled_m.push_back(travelled_m.back() + step.Translation().norm());
-      turned_rad.push_back(turned_rad.back() + std::abs(step.theta));
-      heading_rad.push_back(heading_rad.back() + step.theta);
-    }
-    for (const Node& node : map.graph.nodes()) {
-      const auto at = std::lower_bound(
-          poses.begin(), poses.end(), node.stamp,
-          [](const TrajectoryPose& pose, double stamp) { return pose.stamp < stamp; });
-      const auto i = std::min(static_cast<std::size_t>(at - poses.begin()), poses.size() - 1);
-      at_node_.push_back({travelled_m[i], turned_rad[i], heading_rad[i], poses[i].T_odom_robot});
-    }
-  }
-
-  double Travelled(NodeId from, NodeId to) const {
-    return std::abs(At(to).travelled_m - At(from).travelled_m);
-  }
-  /// All turns taken positive.
-  double Turned(NodeId from, NodeId to) const {
-    return std::abs(At(to).turned_rad - At(from).turned_rad);
-  }
-  /// Unwrapped.
-  double Heading(NodeId from, NodeId to) const { return At(to).heading_rad - At(from).heading_rad; }
-  double Apart(NodeId from, NodeId to) const {
-    return Distance(At(from).T_odom_robot, At(to).T_odom_robot);
-  }
-
- private:
-  struct Count {
-    double travelled_m = 0.0;
-    double turned_rad = 0.0;
-    double heading_rad = 0.0;
-    Pose2 T_odom_robot;
-  };
-  const Count& At(NodeId node) const { return at_node_[static_cast<std::size_t>(node)]; }
-
-  std::vector<Count> at_node_;
+struct Way {
+  double travelled_m = 0.0;
+  double turned_rad = 0.0;  // all turns taken positive
 };
+
+// By wheels, from the start to each node.
+std::vector<Way> WaysToNodes(const BuildingMap& map) {
+  std::vector<Way> ways;
+  Way way;
+  const TrajectoryPose* before = nullptr;
+  for (const TrajectoryPose& pose : map.trajectory) {
+    if (before != nullptr) {
+      const Pose2 step = Between(before->T_odom_robot, pose.T_odom_robot);
+      way.travelled_m += step.Translation().norm();
+      way.turned_rad += std::abs(step.theta);
+    }
+    before = &pose;
+    // Nodes are made at poses.
+    while (ways.size() <= static_cast<std::size_t>(pose.node_before)) ways.push_back(way);
+  }
+  return ways;
+}
 
 double Squared(double x) { return x * x; }
 
@@ -76,10 +52,9 @@ double VarianceFactor(std::vector<double> ratios) {
   return *last / kMedianChi2;
 }
 
-// Of a sigma, as where scans tell (motion/wheel_noise.hpp).
+// Of a sigma, as where scans tell.
 double SigmaScale(double variance_factor) {
-  constexpr double kLeast = 0.05;
-  return std::sqrt(std::clamp(variance_factor, Squared(kLeast), 1.0));
+  return std::clamp(std::sqrt(variance_factor), WheelNoiseOptions().least_scale, 1.0);
 }
 
 // The median, where it is surely another than `expected`; else that.
@@ -109,19 +84,22 @@ double PullVariance(const std::vector<WheelTie>& straight) {
 
 std::vector<WheelTie> WheelTies(const BuildingMap& map) {
   constexpr double kShortest = 2.0;  // m; a match errs by a few centimetres, however long it is
-  const WheelCounts wheels(map);
+  const std::vector<Way> ways = WaysToNodes(map);
   std::vector<WheelTie> ties;
   for (const Closure& closure : map.closures) {
     if (closure.state != ClosureState::kValidated) continue;
-    const NodeId from = closure.older;
-    const NodeId to = closure.newer;
+    const Way& older = ways[static_cast<std::size_t>(closure.older)];
+    const Way& newer = ways[static_cast<std::size_t>(closure.newer)];
     WheelTie tie;
-    tie.travelled_m = wheels.Travelled(from, to);
+    tie.travelled_m = newer.travelled_m - older.travelled_m;
     if (tie.travelled_m < kShortest || tie.travelled_m > kLongestWay) continue;
-    tie.counted_m = wheels.Apart(from, to);
-    tie.matched_m = closure.T_older_newer.mean.Translation().norm();
-    tie.turned_rad = wheels.Turned(from, to);
-    tie.turn_error_rad = WrapAngle(wheels.Heading(from, to) - closure.T_older_newer.mean.theta);
+    tie.turned_rad = newer.turned_rad - older.turned_rad;
+    const Pose2 by_wheels = Between(map.graph.node(closure.older).T_odom_robot,
+                                    map.graph.node(closure.newer).T_odom_robot);
+    const Pose2& by_match = closure.T_older_newer.mean;
+    tie.counted_m = by_wheels.Translation().norm();
+    tie.matched_m = by_match.Translation().norm();
+    tie.turn_error_rad = WrapAngle(by_wheels.theta - by_match.theta);
     ties.push_back(tie);
   }
   return ties;

@@ -23,14 +23,6 @@ BuildingMap Map(const RingDrive& drive, const std::string& mask, const MappingOp
   return mapper.Finish();
 }
 
-double LargestError(const RingDrive& drive, const BuildingMap& map) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < drive.truth.size(); ++i) {
-    worst = std::max(worst, Distance(drive.truth[i], map.trajectory[i].T_world_robot));
-  }
-  return worst;
-}
-
 std::size_t Validated(const BuildingMap& map) {
   std::size_t count = 0;
   for (const Closure& closure : map.closures) {

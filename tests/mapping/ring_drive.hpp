@@ -3,9 +3,11 @@
 // whole.
 #pragma once
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "scan_matching/box_scene.hpp"
 
@@ -58,5 +60,14 @@ struct RingDrive {
     }
   }
 };
+
+/// Of a map of the whole drive, m.
+inline double LargestError(const RingDrive& drive, const BuildingMap& map) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < drive.truth.size(); ++i) {
+    worst = std::max(worst, Distance(drive.truth[i], map.trajectory[i].T_world_robot));
+  }
+  return worst;
+}
 
 }  // namespace masked_mapper

@@ -68,12 +68,15 @@ class LoopCloser {
   }
 
  private:
+  using NodePairs = std::set<std::pair<NodeId, NodeId>>;  ///< older, newer
+
   std::vector<ClosureId> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
   void Solve();
   void CloseLate();
   void CloseOpenVotes();
   void CloseLateByWheels();
-  std::size_t CloseOpenRevisits();
+  /// Of pairs that are not among `tried`, which they become. Returns how many closed.
+  std::size_t CloseOpenRevisits(NodePairs& tried);
   bool CloseRevisit(NodeId newer, NodeId older);
   bool CanBeOne(const Closure& closure) const;
   bool AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const;
@@ -90,8 +93,7 @@ class LoopCloser {
   ClosureMatcher late_matcher_;  ///< its references are other points of the same nodes
   LoopValidator validator_;
   PoseGraphOptimizer optimizer_;
-  std::set<std::pair<NodeId, NodeId>> forbidden_;  ///< older, newer; by hand
-  std::set<std::pair<NodeId, NodeId>> tried_;      ///< older, newer; late
+  NodePairs forbidden_;  ///< by hand
 };
 
 }  // namespace masked_mapper

@@ -18,6 +18,13 @@ struct DeadReckoningOptions {
   double sigma_heading_deg_per_sqrt_rad = 3.0;  ///< deg of heading error after turning by a radian
   double sigma_heading_deg_per_sqrt_s = 0.03;  ///< deg of heading error after a second (gyro drift)
   double sigma_position_per_step = 0.002;      ///< m, of every step with motion: no edge is perfect
+
+  /// For a checkpoint (mapping/state_archive.hpp): what was learnt of them on the way.
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(sigma_position_per_sqrt_m, sigma_heading_deg_per_sqrt_m, sigma_heading_deg_per_sqrt_rad,
+            sigma_heading_deg_per_sqrt_s, sigma_position_per_step);
+  }
 };
 
 /// Motion between two odometry readings, with its covariance in the frame of the first.
@@ -44,11 +51,7 @@ class DeadReckoning {
   /// The state, for a checkpoint (mapping/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
-    archive(last_, T_odom_robot_, T_node_robot_);
-    // They are learnt on the way.
-    archive(options_.sigma_position_per_sqrt_m, options_.sigma_heading_deg_per_sqrt_m,
-            options_.sigma_heading_deg_per_sqrt_rad, options_.sigma_heading_deg_per_sqrt_s,
-            options_.sigma_position_per_step);
+    archive(last_, T_odom_robot_, T_node_robot_, options_);
   }
 
  private:
