@@ -84,7 +84,7 @@ class DriveJoiner {
     for (Node node : more.graph.nodes()) {
       node.floor += floors;
       if (node.HasScan()) node.scan += scans;
-      map_.graph.AddNode(std::move(node));
+      map_.graph.AddNode(node);
     }
     const auto closures = static_cast<ClosureId>(map_.closures.size());
     for (Edge edge : more.graph.edges()) {

@@ -143,7 +143,7 @@ NodeId MaskedMapper::AddNode(double stamp, FloorId floor, EdgeKind kind, KeptSca
   if (!is_first) {
     node.T_world_robot = graph.nodes().back().T_world_robot * motion_.T_node_robot().mean;
   }
-  const NodeId id = graph.AddNode(std::move(node));
+  const NodeId id = graph.AddNode(node);
   if (!is_first) {
     graph.AddEdge({id - 1, id, motion_.T_node_robot(), kind});
   }
