@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "masked_mapper/log/bounded_queue.hpp"
+#include "bounded_queue.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
 
 namespace masked_mapper {

@@ -11,8 +11,8 @@
 
 #include "bag_plan.hpp"
 #include "clock_evidence.hpp"
-#include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
+#include "range_limit.hpp"
 #include "scanner_evidence.hpp"
 
 namespace masked_mapper {

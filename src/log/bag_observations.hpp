@@ -11,9 +11,9 @@
 #include "bag_evidence.hpp"
 #include "bag_plan.hpp"
 #include "cloud_scanner.hpp"
-#include "masked_mapper/log/odometry_at_scans.hpp"
-#include "masked_mapper/log/scan_merger.hpp"
-#include "masked_mapper/log/stamp_mender.hpp"
+#include "odometry_at_scans.hpp"
+#include "scan_merger.hpp"
+#include "stamp_mender.hpp"
 
 namespace masked_mapper {
 

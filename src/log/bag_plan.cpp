@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "range_limit.hpp"
 
 namespace masked_mapper {
 namespace {

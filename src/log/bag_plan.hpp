@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "clock_evidence.hpp"
-#include "masked_mapper/log/frame_tree.hpp"
+#include "frame_tree.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/ros_bag.hpp"
-#include "masked_mapper/log/ros_point_cloud.hpp"
 #include "masked_mapper/sensor/observation.hpp"
+#include "ros_point_cloud.hpp"
 #include "ros_types.hpp"
 #include "scanner_evidence.hpp"
 

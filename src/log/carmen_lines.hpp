@@ -10,8 +10,8 @@
 
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/log/scan_calibration.hpp"
-#include "masked_mapper/log/stamp_mender.hpp"
+#include "scan_calibration.hpp"
+#include "stamp_mender.hpp"
 #include "unpadded_stamps.hpp"
 
 namespace masked_mapper {

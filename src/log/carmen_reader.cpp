@@ -10,10 +10,10 @@
 #include "carmen_lines.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/line_splitter.hpp"
-#include "masked_mapper/log/read_ahead.hpp"
-#include "masked_mapper/log/scan_calibration.hpp"
 #include "masked_mapper/log/text_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "read_ahead.hpp"
+#include "scan_calibration.hpp"
 #include "text_ahead.hpp"
 #include "unpadded_stamps.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/log/ros_point_cloud.hpp"
 #include "masked_mapper/sensor/ground.hpp"
+#include "ros_point_cloud.hpp"
 
 namespace masked_mapper {
 

@@ -10,8 +10,8 @@
 #include "bag_look.hpp"
 #include "bag_plan.hpp"
 #include "bag_sequence.hpp"
+#include "bounded_queue.hpp"
 #include "cloud_scanner.hpp"
-#include "masked_mapper/log/bounded_queue.hpp"
 #include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/text/input_error.hpp"
 

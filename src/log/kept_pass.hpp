@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "masked_mapper/log/read_ahead.hpp"
+#include "read_ahead.hpp"
 
 namespace masked_mapper {
 

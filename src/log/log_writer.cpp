@@ -15,11 +15,11 @@
 
 #include "log_sink.hpp"
 #include "masked_mapper/log/carmen_line.hpp"
-#include "masked_mapper/log/scan_calibration.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "mcap_writer.hpp"
 #include "ros1_bag_writer.hpp"
 #include "ros_log_writer.hpp"
+#include "scan_calibration.hpp"
 
 namespace masked_mapper {
 namespace {

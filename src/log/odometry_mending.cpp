@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "masked_mapper/geometry/angle.hpp"
-#include "masked_mapper/log/odometry_at_scans.hpp"
+#include "odometry_at_scans.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/range_limit.hpp"
+#include "range_limit.hpp"
 
 #include <algorithm>
 #include <cmath>

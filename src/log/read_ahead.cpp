@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/read_ahead.hpp"
+#include "read_ahead.hpp"
 
 #include <utility>
 

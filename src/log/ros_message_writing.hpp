@@ -8,7 +8,7 @@
 
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/log/ros_messages.hpp"
-#include "masked_mapper/log/ros_point_cloud.hpp"
+#include "ros_point_cloud.hpp"
 
 namespace masked_mapper {
 

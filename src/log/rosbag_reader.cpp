@@ -14,8 +14,8 @@
 #include "bag_without_scans.hpp"
 #include "kept_pass.hpp"
 #include "masked_mapper/log/open_bag.hpp"
-#include "masked_mapper/log/read_ahead.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "read_ahead.hpp"
 #include "sorted_bag.hpp"
 
 namespace masked_mapper {

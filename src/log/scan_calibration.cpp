@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/scan_calibration.hpp"
+#include "scan_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/stamp_mender.hpp"
+#include "stamp_mender.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "masked_mapper/log/bounded_queue.hpp"
+#include "bounded_queue.hpp"
 #include "masked_mapper/log/text_source.hpp"
 
 namespace masked_mapper {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper.hpp"
 #include "masked_mapper/mapping/state_archive.hpp"
 
 namespace masked_mapper {

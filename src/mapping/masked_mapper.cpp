@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Algorithm 1, to be read beside the paper: ObserveScan is its loop, CloseLoops its body.
-#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "masked_mapper.hpp"
 
 #include <algorithm>
 #include <cmath>

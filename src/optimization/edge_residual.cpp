@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/optimization/edge_residual.hpp"
+#include "edge_residual.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

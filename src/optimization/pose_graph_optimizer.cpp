@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/optimization/edge_residual.hpp"
+#include "edge_residual.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/routing/floor_paths.hpp"
+#include "floor_paths.hpp"
 
 #include <algorithm>
 #include <cmath>

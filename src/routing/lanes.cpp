@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "floor_paths.hpp"
 #include "masked_mapper/map/drives.hpp"
-#include "masked_mapper/routing/floor_paths.hpp"
 
 namespace masked_mapper {
 namespace {

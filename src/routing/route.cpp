@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "masked_mapper/routing/floor_paths.hpp"
+#include "floor_paths.hpp"
 #include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {

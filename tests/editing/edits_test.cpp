@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

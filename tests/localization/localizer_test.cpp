@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "localization/room_drive.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "mapping/masked_mapper.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/text/input_error.hpp"
 

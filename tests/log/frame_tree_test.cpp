@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/frame_tree.hpp"
+#include "log/frame_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/odometry_at_scans.hpp"
+#include "log/odometry_at_scans.hpp"
 
 #include <gtest/gtest.h>
 

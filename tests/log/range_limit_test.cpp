@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/range_limit.hpp"
+#include "log/range_limit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/ros_point_cloud.hpp"
+#include "log/ros_point_cloud.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/scan_calibration.hpp"
+#include "log/scan_calibration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
 #include "masked_mapper/log/log_writer.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "mapping/masked_mapper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 
 #include "masked_mapper/log/carmen_line.hpp"
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/log/range_limit.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
+#include "range_limit.hpp"
 
 namespace masked_mapper {
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "masked_mapper/log/bounded_queue.hpp"
+#include "bounded_queue.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 
 namespace masked_mapper {
