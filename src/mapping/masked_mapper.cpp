@@ -9,6 +9,7 @@
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map/trajectory.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -11,6 +11,7 @@
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/combined_masks.hpp"
+#include "combined_masks.hpp"
 
 #include <algorithm>
 

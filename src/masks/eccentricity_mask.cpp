@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/eccentricity_mask.hpp"
+#include "eccentricity_mask.hpp"
 
 #include <algorithm>
 #include <cmath>

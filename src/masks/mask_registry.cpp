@@ -8,10 +8,13 @@
 #include <string_view>
 #include <utility>
 
-#include "masked_mapper/masks/combined_masks.hpp"
+#include "combined_masks.hpp"
+#include "eccentricity_mask.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "never_always_masks.hpp"
+#include "openings_mask.hpp"
+#include "sparse_mask.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/openings.hpp"
+#include "openings.hpp"
 
 #include <algorithm>
 #include <cmath>

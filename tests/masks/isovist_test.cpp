@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/isovist.hpp"
+#include "masks/isovist.hpp"
 
 #include <gtest/gtest.h>
 

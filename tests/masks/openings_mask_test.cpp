@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/openings_mask.hpp"
+#include "masks/openings_mask.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/masks/sparse_mask.hpp"
+#include "masks/sparse_mask.hpp"
 
 #include <gtest/gtest.h>
 

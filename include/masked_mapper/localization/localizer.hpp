@@ -17,7 +17,7 @@
 #include "masked_mapper/localization/map_changes.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/building_map.hpp"
-#include "masked_mapper/masks/mask_registry.hpp"
+#include "masked_mapper/masks/mask_options.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/rendering/searchable_floor.hpp"

@@ -7,18 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/masks/eccentricity_mask.hpp"
 #include "masked_mapper/masks/mask.hpp"
-#include "masked_mapper/masks/openings_mask.hpp"
-#include "masked_mapper/masks/sparse_mask.hpp"
+#include "masked_mapper/masks/mask_options.hpp"
 
 namespace masked_mapper {
-
-struct MaskOptions {
-  EccentricityMaskOptions eccentricity;
-  OpeningsMaskOptions openings;
-  SparseMaskOptions sparse;
-};
 
 using MaskFactory = std::function<std::unique_ptr<Mask>(const MaskOptions&)>;
 

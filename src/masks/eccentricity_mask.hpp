@@ -6,23 +6,11 @@
 
 #include <optional>
 
-#include "masked_mapper/masks/isovist.hpp"
+#include "isovist.hpp"
 #include "masked_mapper/masks/mask.hpp"
+#include "masked_mapper/masks/mask_options.hpp"
 
 namespace masked_mapper {
-
-struct EccentricityMaskOptions {
-  IsovistOptions isovist;
-  /// Hysteresis (ours): a place is a corridor from `corridor_above` on, and until below
-  /// `open_below`; 0-1.
-  double open_below = 0.80;
-  double corridor_above = 0.85;
-  double max_drift = 1.2;  ///< Mahalanobis distance to the centroid beyond which a dead end is seen
-  /// Drift is judged only when the scan spans this angle. A scanner that does not see behind stands
-  /// at the edge of what it sees, so that its drift is about sqrt(3) in every corridor; to it a
-  /// dead end shows as a loss of eccentricity (ours).
-  double drift_min_span_deg = 330.0;
-};
 
 /// What one scan says about its place.
 struct PlaceShape {

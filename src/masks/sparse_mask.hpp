@@ -8,16 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "masked_mapper/masks/combined_masks.hpp"
+#include "combined_masks.hpp"
+#include "masked_mapper/masks/mask_options.hpp"
 
 namespace masked_mapper {
-
-struct SparseMaskOptions {
-  double place_m = 3.0;       ///< m; views nearer than this, straight line, are of one place
-  double pass_m = 15.0;       ///< m of path that are one pass; what was seen earlier is seen again
-  double turn_deg = 120.0;    ///< deg between views of one direction; full circles: any
-  double drift_share = 0.03;  ///< of odometry, m per m of path since the earlier view
-};
 
 /// Fires when its one part does and the scan is either apart from the scan nodes of this pass that
 /// saw the same, or sees what was seen in an earlier pass. A corridor driven back is new ground to

@@ -15,17 +15,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "masked_mapper/masks/mask_options.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-struct OpeningOptions {
-  double min_range_m = 5.0;    ///< m; runs are cut from ranges above it; paper: 5
-  double max_depth_m = 5.0;    ///< m; how far along the centre line an end-point may be; paper: 5
-  double min_width_m = 0.75;   ///< m; paper: 0.75
-  double min_angle_deg = 9.0;  ///< deg, as seen from the laser; paper: 9
-  double max_gap_deg = 2.0;    ///< deg of invalid beams that do not end a run (ours)
-};
 
 /// The narrowest place on the way into a run of far ranges.
 struct Opening {

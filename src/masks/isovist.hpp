@@ -14,13 +14,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "masked_mapper/masks/mask_options.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-struct IsovistOptions {
-  double max_range_m = 10.0;  ///< m; beams end here at the latest (ours)
-};
 
 /// Corners in the robot frame, in beam order. Empty when not one beam is valid.
 std::vector<Eigen::Vector2d> Isovist(const LaserScan& scan, const IsovistOptions& options);

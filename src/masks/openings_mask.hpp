@@ -11,35 +11,10 @@
 #include <vector>
 
 #include "masked_mapper/masks/mask.hpp"
-#include "masked_mapper/masks/openings.hpp"
+#include "masked_mapper/masks/mask_options.hpp"
+#include "openings.hpp"
 
 namespace masked_mapper {
-
-struct OpeningsMaskOptions {
-  OpeningOptions detection;
-
-  // (d) Ours but for the idea: a direction is kept when it was seen in `min_share` of the views of
-  // the horizon, with a standard deviation of at most `max_deviation_deg`. The horizon counts the
-  // way and not the time, so that fast and slow robots have the same evidence; a robot at rest sees
-  // nothing new.
-  double view_step_m = 0.1;         ///< m between two views, or
-  double view_step_deg = 5.0;       ///< deg turned between them
-  double horizon_m = 0.5;           ///< m of path
-  int min_views = 4;                ///< in the horizon, however far back, for fast robots
-  int max_views = 12;               ///< in the horizon, for robots that turn on the spot
-  double min_share = 0.7;           ///< 0-1
-  double max_deviation_deg = 12.0;  ///< deg
-  double max_jump_deg = 20.0;       ///< deg between sightings of one direction
-
-  // (e)
-  double min_turn_deg = 40.0;      ///< deg off the course; paper: 40
-  double max_turn_deg = 90.0;      ///< deg off the course; paper: 90
-  double course_distance_m = 0.5;  ///< m of path that the course is taken over (ours)
-
-  // (f)
-  double dead_end_turn_deg = 150.0;  ///< deg; paper: 150
-  double dead_end_distance_m = 0.5;  ///< m from the last node before there is a direction (ours)
-};
 
 /// The robot's direction of travel in the odometry frame.
 class Course {
