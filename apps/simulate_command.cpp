@@ -10,8 +10,8 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "masked_mapper/simulation/building_file.hpp"
-#include "masked_mapper/simulation/building_plans.hpp"
+#include "masked_mapper/simulation/building.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
 #include "masked_mapper/simulation/simulation_files.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"

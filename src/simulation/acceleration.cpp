@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/acceleration.hpp"
+#include "acceleration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "masked_mapper/simulation/segment_index.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/building_file.hpp"
+#include "building_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <optional>
 
+#include "building_plans.hpp"
 #include "building_reader.hpp"
-#include "masked_mapper/simulation/building_plans.hpp"
 #include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 

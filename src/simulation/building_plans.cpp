@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/building_plans.hpp"
+#include "building_plans.hpp"
 
 #include <cmath>
 

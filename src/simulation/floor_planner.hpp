@@ -13,7 +13,7 @@
 
 #include "floor_sketch.hpp"
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "random_generator.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/lidar_simulation.hpp"
+#include "lidar_simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/odometry_simulation.hpp"
+#include "odometry_simulation.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/people.hpp"
+#include "people.hpp"
 
 #include <cmath>
 

@@ -8,7 +8,7 @@
 
 #include "building_assembly.hpp"
 #include "floor_planner.hpp"
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "random_generator.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/robot_drive.hpp"
+#include "robot_drive.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>
 
-#include "masked_mapper/simulation/random_generator.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "random_generator.hpp"
+#include "segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "segment_index.hpp"
 
 #include <algorithm>
 #include <cmath>

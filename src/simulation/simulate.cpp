@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/simulate.hpp"
+#include "simulate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "masked_mapper/simulation/random_generator.hpp"
-#include "masked_mapper/simulation/tour.hpp"
+#include "acceleration.hpp"
+#include "lidar_simulation.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "odometry_simulation.hpp"
+#include "pressure.hpp"
+#include "random_generator.hpp"
+#include "robot_drive.hpp"
+#include "space_lidar.hpp"
+#include "tour.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "masked_mapper/log/log_writer.hpp"
+#include "simulate.hpp"
 
 namespace masked_mapper {
 namespace {

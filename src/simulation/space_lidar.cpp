@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/space_lidar.hpp"
+#include "space_lidar.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/space_surfaces.hpp"
+#include "space_surfaces.hpp"
 
 #include <algorithm>
 #include <array>

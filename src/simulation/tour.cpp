@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/tour.hpp"
+#include "tour.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -8,8 +8,8 @@
 #include <queue>
 #include <utility>
 
-#include "masked_mapper/simulation/random_generator.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "random_generator.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <string>
 
-#include "masked_mapper/simulation/space_lidar.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "simulation/space_lidar.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -6,10 +6,10 @@
 #include <map>
 #include <random>
 
-#include "masked_mapper/simulation/building_plans.hpp"
-#include "masked_mapper/simulation/simulate.hpp"
 #include "routing/true_ways.hpp"
 #include "routing/two_floors.hpp"
+#include "simulation/building_plans.hpp"
+#include "simulation/simulate.hpp"
 
 namespace masked_mapper {
 namespace {

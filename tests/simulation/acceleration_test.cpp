@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/acceleration.hpp"
+#include "simulation/acceleration.hpp"
 
 #include <gtest/gtest.h>
 

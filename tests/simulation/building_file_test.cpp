@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/building_file.hpp"
+#include "simulation/building_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "masked_mapper/simulation/building_plans.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "simulation/building_plans.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/building_plans.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "simulation/building_plans.hpp"
+#include "simulation/segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

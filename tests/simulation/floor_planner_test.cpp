@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "simulation/segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/random_generator.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "simulation/random_generator.hpp"
+#include "simulation/segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/people.hpp"
+#include "simulation/people.hpp"
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/building_plans.hpp"
+#include "simulation/building_plans.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <set>
 
-#include "masked_mapper/simulation/building_file.hpp"
-#include "masked_mapper/simulation/robot_drive.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
-#include "masked_mapper/simulation/tour.hpp"
+#include "simulation/building_file.hpp"
+#include "simulation/robot_drive.hpp"
+#include "simulation/segment_index.hpp"
+#include "simulation/tour.hpp"
 
 namespace masked_mapper {
 namespace {

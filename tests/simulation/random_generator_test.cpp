@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "simulation/random_generator.hpp"
 
 #include <gtest/gtest.h>
 

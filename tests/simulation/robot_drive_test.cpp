@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/robot_drive.hpp"
+#include "simulation/robot_drive.hpp"
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/building_plans.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "simulation/building_plans.hpp"
+#include "simulation/segment_index.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "simulation/segment_index.hpp"
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "simulation/random_generator.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,7 +9,8 @@
 #include <sstream>
 
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/simulation/building_plans.hpp"
+#include "simulation/building_plans.hpp"
+#include "simulation/simulate.hpp"
 
 namespace masked_mapper {
 namespace {

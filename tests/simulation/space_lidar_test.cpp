@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/space_lidar.hpp"
+#include "simulation/space_lidar.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "masked_mapper/geometry/angle.hpp"
-#include "masked_mapper/simulation/building_file.hpp"
-#include "masked_mapper/simulation/building_plans.hpp"
+#include "simulation/building_file.hpp"
+#include "simulation/building_plans.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/space_surfaces.hpp"
+#include "simulation/space_surfaces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "masked_mapper/simulation/building_file.hpp"
-#include "masked_mapper/simulation/space_lidar.hpp"
+#include "simulation/building_file.hpp"
+#include "simulation/space_lidar.hpp"
 
 namespace masked_mapper {
 namespace {

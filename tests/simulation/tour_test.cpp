@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/tour.hpp"
+#include "simulation/tour.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "masked_mapper/simulation/building_plans.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "simulation/building_plans.hpp"
 
 namespace masked_mapper {
 namespace {

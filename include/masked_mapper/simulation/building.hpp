@@ -98,6 +98,12 @@ struct Building {
   UsualTour usual_tour;
 };
 
+/// The names of the buildings that come with the program, `random` among them.
+std::vector<std::string> BuildingNames();
+/// A named building, or one from a file.
+/// Throws InputError when there is neither.
+Building LoadBuilding(const std::string& name_or_path, std::uint64_t seed);
+
 /// The walls of a cab and its front beside the door; the door itself is not among them.
 std::vector<Segment> CabWalls(const Elevator& elevator);
 

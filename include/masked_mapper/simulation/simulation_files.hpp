@@ -5,7 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "masked_mapper/simulation/simulate.hpp"
+#include "masked_mapper/simulation/building.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
 
 namespace masked_mapper {
 

@@ -4,23 +4,10 @@
 
 #include <cstdint>
 
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "random_generator.hpp"
 
 namespace masked_mapper {
-
-struct PressureOptions {
-  double rate = 2.0;             ///< Hz; 0: no barometer
-  double sea_level = 101'325.0;  ///< Pa, on the building's height 0 on an average day
-};
-
-struct PressureNoise {
-  double sigma = 0.25;                 ///< m, as height
-  double weather = 1.5;                ///< m, amplitude of each of three slow waves of 2 to 8 hours
-  double ventilation = 0.15;           ///< m, deviation of what ventilation adds
-  double ventilation_seconds = 300.0;  ///< over which that forgets
-
-  static PressureNoise None();
-};
 
 /// Pressure of the standard atmosphere at a height, Pa; 12 Pa less per metre.
 double PressureAt(double height, double sea_level);

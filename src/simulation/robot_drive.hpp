@@ -9,23 +9,10 @@
 
 #include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/tour.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "tour.hpp"
 
 namespace masked_mapper {
-
-struct DriveOptions {
-  std::uint64_t seed = 1;
-  double robot_radius = 0.3;       ///< m; nothing that stands comes nearer to its centre
-  double speed_min = 0.5;          ///< m/s, the pace of a stretch is drawn between these
-  double speed_max = 0.7;          ///< m/s
-  double stairs_speed = 0.35;      ///< m/s
-  double acceleration = 0.5;       ///< m/s^2
-  double turn_rate = 0.8;          ///< rad/s
-  double turn_acceleration = 1.6;  ///< rad/s^2
-  double wander = 0.25;            ///< m, off the middle of the way at most
-  double rest_every = 25.0;        ///< m between stops, on average
-  double rest_per_metre = 0.2;     ///< s of standing about per metre driven, on average
-};
 
 struct RobotState {
   Pose2 T_building_robot;

@@ -17,8 +17,4 @@ Building ReadBuilding(std::istream& text, const std::string& name);
 /// The inverse of ReadBuilding.
 std::string WriteBuilding(const Building& building);
 
-/// A named building, or one from a file.
-/// Throws InputError when there is neither.
-Building LoadBuilding(const std::string& name_or_path, std::uint64_t seed);
-
 }  // namespace masked_mapper

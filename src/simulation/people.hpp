@@ -8,18 +8,10 @@
 #include <vector>
 
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/random_generator.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "random_generator.hpp"
 
 namespace masked_mapper {
-
-struct PeopleOptions {
-  double per_kilometre = 25.0;   ///< people per km of passages; 0: an empty building
-  double speed = 1.2;            ///< m/s
-  double aside = 0.55;           ///< m, off the middle of the way, to their right
-  double leg_radius = 0.07;      ///< m
-  double stand_share = 0.25;     ///< of the ways after which one stops for a while
-  double keep_from_robot = 0.7;  ///< m; nearer than that they step out of the scan
-};
 
 struct Leg {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();

@@ -6,22 +6,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "masked_mapper/simulation/random_generator.hpp"
-#include "masked_mapper/simulation/robot_drive.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "random_generator.hpp"
+#include "robot_drive.hpp"
 
 namespace masked_mapper {
-
-struct AccelerationOptions {
-  double rate = 0.0;  ///< Hz; 0: no accelerometer
-};
-
-struct AccelerationNoise {
-  double sigma = 0.03;      ///< m/s^2, at rest
-  double vibration = 0.25;  ///< m/s^2 more per m/s of driving
-  double bias = 0.04;       ///< m/s^2, deviation of each axis' constant error
-
-  static AccelerationNoise None();
-};
 
 class AccelerationSimulation {
  public:

@@ -8,29 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "lidar_simulation.hpp"
 #include "masked_mapper/log/log_writer.hpp"
-#include "masked_mapper/simulation/lidar_simulation.hpp"
-#include "masked_mapper/simulation/space_surfaces.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "space_surfaces.hpp"
 
 namespace masked_mapper {
-
-enum class SpaceLidarModel { kVlp16, kOs1_32, kMid360 };
-/// By the names of the command line; empty: none of them.
-std::optional<SpaceLidarModel> SpaceLidarCalled(const std::string& name);
-std::vector<std::string> SpaceLidarNames();
-
-/// What is public of such a lidar, in its usual mode.
-struct SpaceLidarOptions {
-  SpaceLidarModel model = SpaceLidarModel::kVlp16;
-  double turn_rate = 10.0;                         ///< Hz, in which a sweep is taken
-  double rate = 10.0;                              ///< Hz, of the sweeps that are recorded
-  double max_range = 100.0;                        ///< m
-  double min_range = 0.3;                          ///< m
-  double sigma = 0.02;                             ///< m
-  Eigen::Vector3d lidar_on_robot{0.12, 0.0, 0.6};  ///< m; it stands upright and looks ahead
-  CloudLayout layout = CloudLayout::kVelodyne;
-};
-SpaceLidarOptions OptionsOf(SpaceLidarModel model);
 
 class SpaceLidar {
  public:

@@ -19,9 +19,8 @@ Building CorridorsBuilding();
 Building TowerBuilding();
 /// The size of the paper's: three buildings, four floors, about 34 000 m^2 of bounding area.
 Building CampusBuilding();
-/// The names of those above in lower case, and `random` (random_building.hpp).
-std::vector<std::string> BuildingNames();
-/// Empty when there is no building of that name.
+/// One of those above by its name in lower case, or `random` (random_building.hpp). Empty when
+/// there is no building of that name.
 std::optional<Building> NamedBuilding(const std::string& name, std::uint64_t seed);
 
 }  // namespace masked_mapper

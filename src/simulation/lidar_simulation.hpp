@@ -8,34 +8,13 @@
 
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/simulation/building.hpp"
-#include "masked_mapper/simulation/people.hpp"
-#include "masked_mapper/simulation/random_generator.hpp"
-#include "masked_mapper/simulation/robot_drive.hpp"
-#include "masked_mapper/simulation/segment_index.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
+#include "people.hpp"
+#include "random_generator.hpp"
+#include "robot_drive.hpp"
+#include "segment_index.hpp"
 
 namespace masked_mapper {
-
-/// The scanner itself; the defaults are those of the named buildings.
-struct LidarOptions {
-  double rate = 5.0;  ///< Hz
-  std::size_t beams = 361;
-  double field_of_view_deg = 270.0;  ///< from the first beam to the last; 360: evenly all round
-  double max_range = 30.0;           ///< m
-  double min_range = 0.05;           ///< m, nearer things are not seen
-  Pose2 T_robot_laser{0.12, 0.0, 0.0};
-};
-
-struct LidarNoise {
-  double sigma = 0.02;         ///< m
-  double resolution = 0.01;    ///< m, ranges are multiples of it; 0: exact
-  double glass_return = 0.75;  ///< chance that glass returns a beam that meets it squarely; at
-                               ///< slant angles it falls with the square of the cosine
-  double lost = 0.0005;        ///< chance that a beam does not return at all
-  PeopleOptions people;
-
-  /// Nothing but walls: every beam ends at the first thing standing, glass included.
-  static LidarNoise None();
-};
 
 class LidarSimulation {
  public:
