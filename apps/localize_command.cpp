@@ -18,7 +18,6 @@
 #include "masked_mapper/log/live_log.hpp"
 #include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/log/log_summary.hpp"
-#include "masked_mapper/log/recordings.hpp"
 #include "masked_mapper/map_file/map_file_reader.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/mapping/straightened_log.hpp"

@@ -20,7 +20,6 @@
 #include "masked_mapper/export/closing_table.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/log/log_source.hpp"
-#include "masked_mapper/log/recordings.hpp"
 #include "masked_mapper/log/spool.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"

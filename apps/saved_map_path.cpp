@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_map_path.hpp"
 
-#include "masked_mapper/log/open_bag.hpp"
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/text/input_error.hpp"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "masked_mapper/log/carmen_line.hpp"
+#include "log/carmen_line.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 
 namespace masked_mapper {

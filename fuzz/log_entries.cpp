@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/entries.hpp"
 #include "fuzz/input_file.hpp"
+#include "log/ros_messages.hpp"
 #include "log/ros_point_cloud.hpp"
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/log/ros_messages.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {

@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text files of this room's kinds, read line by line and strictly.
+// Words and numbers of the lines of this room's text files, read strictly.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <string>
 #include <string_view>
 #include <vector>
 
+#include "masked_mapper/log/text_lines.hpp"
+
 namespace masked_mapper {
-
-/// A place in a text file, for what is said of it.
-struct FileLine {
-  const std::string& path;
-  std::size_t number;  ///< from 1
-
-  [[noreturn]] void Fail(const std::string& reason) const;  ///< throws InputError
-};
-
-/// Calls for each line, without its line break. Throws InputError when the file cannot be read, is
-/// cut off, or has a line beyond any reason.
-void ForEachLine(const std::string& path,
-                 const std::function<void(std::string_view, const FileLine&)>& on_line);
 
 /// The words of a line, parted by blanks and tabs.
 std::vector<std::string_view> WordsOf(std::string_view line);

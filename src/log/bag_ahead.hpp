@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bounded_queue.hpp"
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "masked_mapper/log/open_bag.hpp"
+#include "open_bag.hpp"
 
 namespace masked_mapper {
 

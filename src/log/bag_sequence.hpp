@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
 

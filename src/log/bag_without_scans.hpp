@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "masked_mapper/log/ros_messages.hpp"
+#include "ros_messages.hpp"
 #include "ros_types.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/carmen_line.hpp"
+#include "carmen_line.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+
+#include "masked_mapper/log/floor_file.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -282,15 +284,6 @@ CarmenLine ParseCarmenLine(const char* begin, const char* end, bool read_ranges)
   }
   if (IsMessageName(name)) return CarmenOther{std::string(name)};
   return CarmenError{"not a message"};
-}
-
-bool IsFloorLabel(const std::string& label) {
-  constexpr std::size_t kLongest = 64;
-  return !label.empty() && label.size() <= kLongest && label != "." && label != ".." &&
-         std::all_of(label.begin(), label.end(), [](char c) {
-           return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
-                  c == '_' || c == '.' || c == '-';
-         });
 }
 
 }  // namespace masked_mapper

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "masked_mapper/log/carmen_line.hpp"
+#include "carmen_line.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "scan_calibration.hpp"
 #include "stamp_mender.hpp"

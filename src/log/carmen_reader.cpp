@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "carmen_line.hpp"
 #include "carmen_lines.hpp"
-#include "masked_mapper/log/carmen_line.hpp"
-#include "masked_mapper/log/line_splitter.hpp"
-#include "masked_mapper/log/text_source.hpp"
+#include "line_splitter.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "read_ahead.hpp"
 #include "scan_calibration.hpp"
 #include "text_ahead.hpp"
+#include "text_source.hpp"
 #include "unpadded_stamps.hpp"
 
 namespace masked_mapper {

@@ -12,8 +12,9 @@
 #include "bag_sequence.hpp"
 #include "bounded_queue.hpp"
 #include "cloud_scanner.hpp"
-#include "masked_mapper/log/open_bag.hpp"
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "open_bag.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "masked_mapper/log/floor_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -9,7 +10,7 @@
 #include <optional>
 #include <system_error>
 
-#include "masked_mapper/log/carmen_line.hpp"
+#include "carmen_line.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -36,6 +37,15 @@ std::optional<FloorLabel> ParseLine(const std::string& line) {
 }
 
 }  // namespace
+
+bool IsFloorLabel(const std::string& label) {
+  constexpr std::size_t kLongest = 64;
+  return !label.empty() && label.size() <= kLongest && label != "." && label != ".." &&
+         std::all_of(label.begin(), label.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                  c == '_' || c == '.' || c == '-';
+         });
+}
 
 std::vector<FloorLabel> ReadFloorFile(const std::string& path) {
   std::error_code error;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "carmen_lines.hpp"
-#include "masked_mapper/log/line_splitter.hpp"
+#include "line_splitter.hpp"
 
 namespace masked_mapper {
 namespace {

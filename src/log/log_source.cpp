@@ -5,10 +5,11 @@
 
 #include "carmen_reader.hpp"
 #include "log_plan.hpp"
-#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/spool.hpp"
 #include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "odometry_mending.hpp"
+#include "open_bag.hpp"
 #include "rosbag_reader.hpp"
 
 namespace masked_mapper {

@@ -13,8 +13,9 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "carmen_line.hpp"
 #include "log_sink.hpp"
-#include "masked_mapper/log/carmen_line.hpp"
+#include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "mcap_writer.hpp"
 #include "ros1_bag_writer.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
 

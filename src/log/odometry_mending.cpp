@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/odometry_mending.hpp"
+#include "odometry_mending.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/open_bag.hpp"
+#include "open_bag.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,12 @@
 #include "bag_around_bag.hpp"
 #include "bag_file.hpp"
 #include "bag_sequence.hpp"
-#include "masked_mapper/log/text_source.hpp"
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "mcap_file.hpp"
 #include "ros2_bag_file.hpp"
 #include "spooled_file.hpp"
+#include "text_source.hpp"
 #include "unpacking.hpp"
 
 namespace masked_mapper {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/recordings.hpp"
+#include "masked_mapper/log/log_source.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <set>
 
-#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/log/spool.hpp"
+#include "open_bag.hpp"
 
 namespace masked_mapper {
 namespace {

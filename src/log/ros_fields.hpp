@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fast_cdr.hpp"
-#include "masked_mapper/log/ros_messages.hpp"
 #include "output_bytes.hpp"
+#include "ros_messages.hpp"
 
 namespace masked_mapper {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "masked_mapper/log/log_writer.hpp"
-#include "masked_mapper/log/ros_messages.hpp"
+#include "ros_messages.hpp"
 #include "ros_point_cloud.hpp"
 
 namespace masked_mapper {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "masked_mapper/log/ros_messages.hpp"
 #include "masked_mapper/sensor/lidar_cloud.hpp"
+#include "ros_messages.hpp"
 
 namespace masked_mapper {
 

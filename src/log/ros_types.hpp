@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
 

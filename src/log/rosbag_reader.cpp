@@ -13,8 +13,8 @@
 #include "bag_sequence.hpp"
 #include "bag_without_scans.hpp"
 #include "kept_pass.hpp"
-#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "open_bag.hpp"
 #include "read_ahead.hpp"
 #include "sorted_bag.hpp"
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/log/carmen_line.hpp"
+#include "carmen_line.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "range_limit.hpp"

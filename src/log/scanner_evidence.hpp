@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "masked_mapper/log/ros_messages.hpp"
+#include "ros_messages.hpp"
 
 namespace masked_mapper {
 

@@ -12,8 +12,8 @@
 #include <memory>
 #include <vector>
 
-#include "masked_mapper/log/text_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
+#include "text_source.hpp"
 
 namespace masked_mapper {
 namespace {

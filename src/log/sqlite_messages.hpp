@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "bounded_queue.hpp"
-#include "masked_mapper/log/text_source.hpp"
+#include "text_source.hpp"
 
 namespace masked_mapper {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "masked_mapper/log/odometry_mending.hpp"
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/motion/standstill_check.hpp"
 #include "masked_mapper/motion/wheel_check.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "assumed_heights.hpp"
-#include "masked_mapper/log/carmen_line.hpp"
+#include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 

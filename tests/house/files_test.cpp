@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "house/source_tree.hpp"
 
@@ -42,18 +43,37 @@ TEST(Files, HeadersAreIncludedOnce) {
   }
 }
 
-/// src/<room>/x.cpp has include/masked_mapper/<room>/x.hpp and tests/<room>/x_test.cpp. A source
-/// whose header stands beside it in src/ is an inner part of its room, tested with the room.
+/// The header that a source implements is the first that it includes.
+fs::path HeaderOf(const fs::path& source) {
+  const std::vector<std::string> includes = IncludesOf(source);
+  return includes.empty() ? fs::path() : fs::path(includes.front());
+}
+
+/// src/<room>/x.cpp implements a header of include/masked_mapper/<room>, and has
+/// tests/<room>/x_test.cpp. A source whose header stands beside it in src/ is an inner part of its
+/// room, tested with the room.
 TEST(Files, TreesMirrorEachOther) {
   for (const fs::path& source : FilesUnder("src", {".cpp"})) {
     const fs::path below = source.lexically_relative("src");
     if (fs::exists((Root() / source).replace_extension(".hpp"))) continue;
-    const fs::path header =
-        fs::path("include/masked_mapper") / fs::path(below).replace_extension(".hpp");
-    EXPECT_TRUE(fs::exists(Root() / header)) << source << " has no " << header;
+    const fs::path header = HeaderOf(source);
+    EXPECT_EQ(header.parent_path(), fs::path("masked_mapper") / below.parent_path())
+        << source << " implements no header of its room: its first is " << header;
     const fs::path test =
         fs::path("tests") / below.parent_path() / (below.stem().string() + "_test.cpp");
     EXPECT_TRUE(fs::exists(Root() / test)) << source << " has no " << test;
+  }
+}
+
+/// A header that is implemented is so by the source of its name, at least.
+TEST(Files, HeadersAreImplementedUnderTheirNames) {
+  std::map<fs::path, std::set<fs::path>> implemented_by;
+  for (const fs::path& source : FilesUnder("src", {".cpp"})) {
+    if (fs::exists((Root() / source).replace_extension(".hpp"))) continue;
+    implemented_by[HeaderOf(source)].insert(source.stem());
+  }
+  for (const auto& [header, stems] : implemented_by) {
+    EXPECT_TRUE(stems.count(header.stem())) << header << " has no source of its name";
   }
 }
 

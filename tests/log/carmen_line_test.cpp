@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/carmen_line.hpp"
+#include "log/carmen_line.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 
 #include "log/bag_drive.hpp"
 #include "log/cloud_bytes.hpp"
-#include "masked_mapper/log/open_bag.hpp"
+#include "log/open_bag.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "sensor/room_cloud.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/line_splitter.hpp"
+#include "log/line_splitter.hpp"
 
 #include <gtest/gtest.h>
 

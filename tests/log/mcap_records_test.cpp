@@ -10,8 +10,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "log/open_bag.hpp"
 #include "log/temporary_file.hpp"
-#include "masked_mapper/log/open_bag.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/odometry_mending.hpp"
+#include "log/odometry_mending.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/open_bag.hpp"
+#include "log/open_bag.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/recordings.hpp"
+#include "masked_mapper/log/log_source.hpp"
 
 #include <gtest/gtest.h>
 

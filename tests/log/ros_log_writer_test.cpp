@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "log/open_bag.hpp"
 #include "log/ros_point_cloud.hpp"
 #include "log/temporary_file.hpp"
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/log_writer.hpp"
-#include "masked_mapper/log/open_bag.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/ros_messages.hpp"
+#include "log/ros_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/text_source.hpp"
+#include "log/text_source.hpp"
 
 #include <gtest/gtest.h>
 

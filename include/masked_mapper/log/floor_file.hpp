@@ -10,6 +10,10 @@
 
 namespace masked_mapper {
 
+/// Whether a floor's label may become a file name (DESIGN, Command line); `-` (in transit) is one
+/// here.
+bool IsFloorLabel(const std::string& label);
+
 /// In order of stamps. Throws InputError, which names file and line, when the file cannot be read,
 /// a line is not of this form, a label may not become a file name, stamps step back, or no line
 /// says a floor.

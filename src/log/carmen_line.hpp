@@ -61,8 +61,4 @@ using CarmenLine =
 /// ignored.
 CarmenLine ParseCarmenLine(const char* begin, const char* end, bool read_ranges);
 
-/// Whether a floor's label may become a file name (DESIGN, Command line); `-` (in transit) is one
-/// here.
-bool IsFloorLabel(const std::string& label);
-
 }  // namespace masked_mapper

@@ -8,12 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "masked_mapper/log/ros_bag.hpp"
+#include "ros_bag.hpp"
 
 namespace masked_mapper {
-
-/// False also when it cannot be opened.
-bool IsBag(const std::string& path);
 
 /// Throws InputError: none of them, or of a version that is not read.
 std::unique_ptr<RosBag> OpenBag(const std::string& path);

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "masked_mapper/log/ros_messages.hpp"
+#include "ros_messages.hpp"
 
 namespace masked_mapper {
 
