@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/closures.hpp"
+#include "closures.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/floors.hpp"
+#include "floors.hpp"
 
 #include <algorithm>
 #include <set>

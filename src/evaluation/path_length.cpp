@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/path_length.hpp"
+#include "path_length.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "error_statistics.hpp"
 #include "shortest_path.hpp"
 
 namespace masked_mapper {

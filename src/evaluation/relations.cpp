@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/relations.hpp"
+#include "relations.hpp"
 
 #include <cmath>
 #include <optional>
 #include <string_view>
 
+#include "error_statistics.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "number_lines.hpp"
 

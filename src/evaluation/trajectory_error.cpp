@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/trajectory_error.hpp"
+#include "trajectory_error.hpp"
 
 #include <cmath>
 #include <utility>
 
+#include "error_statistics.hpp"
 #include "masked_mapper/geometry/rigid_alignment.hpp"
 
 namespace masked_mapper {

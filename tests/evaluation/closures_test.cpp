@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Closures, path lengths and floors on a square of 40 m, driven one and a half times.
-#include "masked_mapper/evaluation/closures.hpp"
+#include "evaluation/closures.hpp"
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/evaluation/floors.hpp"
-#include "masked_mapper/evaluation/path_length.hpp"
+#include "evaluation/floors.hpp"
+#include "evaluation/path_length.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/error_statistics.hpp"
+#include "evaluation/error_statistics.hpp"
 
 #include <gtest/gtest.h>
 

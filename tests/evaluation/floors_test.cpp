@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/floors.hpp"
+#include "evaluation/floors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/path_length.hpp"
+#include "evaluation/path_length.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/relations.hpp"
+#include "evaluation/relations.hpp"
 
 #include <gtest/gtest.h>
 

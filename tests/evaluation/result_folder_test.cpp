@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/result_folder.hpp"
+#include "evaluation/result_folder.hpp"
 
 #include <gtest/gtest.h>
 

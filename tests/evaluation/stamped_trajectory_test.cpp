@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/stamped_trajectory.hpp"
+#include "evaluation/stamped_trajectory.hpp"
 
 #include <gtest/gtest.h>
 

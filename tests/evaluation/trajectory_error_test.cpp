@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/trajectory_error.hpp"
+#include "evaluation/trajectory_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/evaluation/truth.hpp"
+#include "evaluation/truth.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/evaluation/stamped_trajectory.hpp"
+#include "stamped_trajectory.hpp"
 
 namespace masked_mapper {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/evaluation/error_statistics.hpp"
-#include "masked_mapper/evaluation/stamped_trajectory.hpp"
+#include "masked_mapper/evaluation/evaluation.hpp"
+#include "stamped_trajectory.hpp"
 
 namespace masked_mapper {
 
@@ -21,13 +21,6 @@ struct Relation {
 /// Lines `t1 t2 x y z roll pitch yaw`; z, roll and pitch are read and not used. Throws InputError,
 /// which names file and line.
 std::vector<Relation> ReadRelations(const std::string& path);
-
-struct RelationsError {
-  std::size_t count = 0;
-  std::size_t used = 0;  ///< both stamps lie in the trajectory, or within 0.5 s of it
-  ErrorStatistics translation_m;
-  ErrorStatistics rotation_deg;
-};
 
 RelationsError CompareWithRelations(const std::vector<StampedPose>& trajectory,
                                     const std::vector<Relation>& relations);

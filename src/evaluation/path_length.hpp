@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/evaluation/closures.hpp"
-#include "masked_mapper/evaluation/error_statistics.hpp"
-#include "masked_mapper/evaluation/result_folder.hpp"
+#include "closures.hpp"
+#include "masked_mapper/evaluation/evaluation.hpp"
+#include "result_folder.hpp"
 
 namespace masked_mapper {
 
@@ -30,12 +30,6 @@ struct StampPair {
 /// Drawn evenly between the first and the last stamp of the log, so the same for every map of it.
 std::vector<StampPair> DrawStampPairs(double first, double last,
                                       const PathLengthOptions& options = {});
-
-struct PathLengthError {
-  ErrorStatistics error_m;  ///< of the magnitude, over all pairs
-  double missing_m = 0.0;   ///< mean over all pairs of what is too long
-  double false_m = 0.0;     ///< mean over all pairs of what is too short; the two sum to the mean
-};
 
 /// The true graph has the map's nodes at their true poses. What ties them is the drive itself,
 /// every true revisit, and those of the map's own edges whose true length is the map's within

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/evaluation/stamped_trajectory.hpp"
 #include "masked_mapper/sensor/observation.hpp"
+#include "stamped_trajectory.hpp"
 
 namespace masked_mapper {
 

@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/evaluation/result_folder.hpp"
-#include "masked_mapper/evaluation/truth.hpp"
+#include "masked_mapper/evaluation/evaluation.hpp"
+#include "result_folder.hpp"
+#include "truth.hpp"
 
 namespace masked_mapper {
 
@@ -38,24 +39,6 @@ struct RevisitOptions {
 std::vector<std::pair<std::size_t, std::size_t>> TrueRevisits(
     const std::vector<StampedPose>& nodes, const std::vector<std::optional<StampedPose>>& truth,
     const RevisitOptions& options = {});
-
-struct FalseClosure {
-  double stamp_a = 0.0;  ///< s
-  double stamp_b = 0.0;  ///< s
-  double translation_m = 0.0;
-  double rotation_deg = 0.0;
-};
-
-struct ClosureError {
-  std::size_t validated = 0;
-  std::size_t checked = 0;  ///< validated, and the truth at both ends is known
-  std::size_t true_pairs = 0;
-  std::size_t closed_pairs = 0;
-  std::vector<FalseClosure> false_closures;
-
-  std::optional<double> Precision() const;  ///< share of the checked ones that are true
-  std::optional<double> Recall() const;     ///< share of the true pairs that are closed
-};
 
 /// `truth` is that of the graph's nodes.
 ClosureError CheckClosures(const MappedGraph& graph, const std::vector<ValidatedClosure>& closures,

@@ -8,20 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/evaluation/result_folder.hpp"
-#include "masked_mapper/evaluation/truth.hpp"
+#include "masked_mapper/evaluation/evaluation.hpp"
+#include "result_folder.hpp"
+#include "truth.hpp"
 
 namespace masked_mapper {
-
-struct FloorIdentity {
-  std::size_t scans = 0;       ///< outside transit, with a true floor
-  std::size_t right = 0;       ///< up to the renaming
-  std::size_t same_label = 0;  ///< label and true label are the same text
-  std::map<std::string, std::string>
-      renaming;  ///< true label of each of the map's, where it has one
-
-  double Right() const { return static_cast<double>(right) / static_cast<double>(scans); }
-};
 
 /// The map names floors by their place unless the log gives labels, and the truth may name them in
 /// another way: labels are matched one to one, the pair that most scans agree on first (of equals,
