@@ -2,26 +2,17 @@
 #include "ride_watch.hpp"
 
 #include <cmath>
-#include <utility>
 #include <variant>
-#include <vector>
 
 namespace masked_mapper {
 namespace {
 
 constexpr double kWindow = 240.0;    // s; the weather does little in it
 constexpr double kLookEvery = 0.8;   // s
-constexpr double kLongGap = 15.0;    // s without a reading: a ride may have been in between
 constexpr double kSettled = 5.0;     // s; until then stairs may only pause
 constexpr double kSame = 3.0;        // s, by which the end of a ride may look otherwise later
 constexpr double kCabRest = 3.0;     // s, that wheels rest in a cab when a ride is noticed
 constexpr double kCabRadius = 0.25;  // m
-
-std::vector<double> StampsOf(const PressureHeights& heights) {
-  std::vector<double> stamps;
-  for (const HeightSample& sample : heights.samples) stamps.push_back(sample.stamp);
-  return stamps;
-}
 
 template <class Reading>
 void Forget(std::deque<Reading>& readings, double before) {
@@ -33,18 +24,18 @@ void Forget(std::deque<Reading>& readings, double before) {
 void RideWatch::Observe(const Observation& observation) {
   newest_ = Stamp(observation);
   if (const auto* scan = std::get_if<LaserScan>(&observation)) {
-    if (scan->T_odom_robot) odometry_.push_back({scan->stamp, *scan->T_odom_robot});
+    if (scan->T_odom_robot) readings_.odometry.push_back({scan->stamp, *scan->T_odom_robot});
   } else if (const auto* odometry = std::get_if<OdometryReading>(&observation)) {
-    odometry_.push_back(*odometry);
+    readings_.odometry.push_back(*odometry);
   } else if (const auto* pressure = std::get_if<PressureReading>(&observation)) {
-    pressure_.push_back(*pressure);
+    readings_.pressure.push_back(*pressure);
   } else if (const auto* acceleration = std::get_if<AccelerationReading>(&observation)) {
-    acceleration_.push_back(*acceleration);
+    readings_.acceleration.push_back(*acceleration);
   }
-  may_tell_ |= !pressure_.empty() || !acceleration_.empty();
-  Forget(odometry_, newest_ - kWindow);
-  Forget(pressure_, newest_ - kWindow);
-  Forget(acceleration_, newest_ - kWindow);
+  may_tell_ |= !readings_.pressure.empty() || !readings_.acceleration.empty();
+  Forget(readings_.odometry, newest_ - kWindow);
+  Forget(readings_.pressure, newest_ - kWindow);
+  Forget(readings_.acceleration, newest_ - kWindow);
 }
 
 void RideWatch::NotePose(const Pose2& T_odom_robot) {
@@ -55,31 +46,11 @@ void RideWatch::NotePose(const Pose2& T_odom_robot) {
 
 bool RideWatch::IsResting() const { return newest_ - moved_at_ >= kCabRest; }
 
-std::vector<FloorTransit> RideWatch::Transits() const {
-  PressureTrack pressure;
-  AccelerationTrack acceleration(options_.acceleration);
-  WheelTrack wheels;
-  for (const OdometryReading& reading : odometry_) wheels.Observe(reading);
-  for (const PressureReading& reading : pressure_) pressure.Observe(reading);
-  for (const AccelerationReading& reading : acceleration_) acceleration.Observe(reading);
-  std::vector<FloorEvidence> sensors;
-  const PressureHeights heights = pressure.Heights(options_.pressure.heights);
-  if (!heights.samples.empty()) {
-    sensors.push_back({TransitsOfPressure(heights, wheels, options_.pressure, options_.storeys),
-                       SpansOf(StampsOf(heights), kLongGap)});
-  }
-  AccelerationTrack::Rides rides = acceleration.FindRides(wheels, options_.storeys);
-  if (rides.usable) {
-    sensors.push_back({std::move(rides.transits), SpansOf(acceleration.Stamps(), kLongGap)});
-  }
-  return Fused(sensors);
-}
-
 bool RideWatch::IsDue() const { return may_tell_ && newest_ >= looked_ + kLookEvery; }
 
 std::optional<RideNews> RideWatch::News() {
   looked_ = newest_;
-  for (const FloorTransit& transit : Transits()) {
+  for (const FloorTransit& transit : MeasuredTransits(readings_, options_)) {
     // What the beginning of the last minutes cuts was told when it was whole; and one that was told
     // may look a little otherwise later.
     const bool is_cut = std::isinf(transit.start) && !std::isinf(transit.end);

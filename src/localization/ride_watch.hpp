@@ -3,7 +3,6 @@
 // again and again, as mapping looks at a whole log.
 #pragma once
 
-#include <deque>
 #include <limits>
 #include <optional>
 #include <string>
@@ -38,12 +37,8 @@ class RideWatch {
   std::optional<RideNews> News();
 
  private:
-  std::vector<FloorTransit> Transits() const;
-
   FloorOptions options_;
-  std::deque<OdometryReading> odometry_;  ///< of the last minutes, as below
-  std::deque<PressureReading> pressure_;
-  std::deque<AccelerationReading> acceleration_;
+  SensorReadings readings_;    ///< of the last minutes
   double newest_ = 0.0;        ///< s
   double looked_ = 0.0;        ///< s, when the last minutes were last looked at
   double told_climb_m_ = 0.0;  ///< of the ride that was told last

@@ -9,7 +9,7 @@
 
 #include "database.hpp"
 #include "log_identity.hpp"
-#include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/sensor/state_archive.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "packed_bytes.hpp"
 #include "unfinished_folder.hpp"

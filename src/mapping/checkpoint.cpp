@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "masked_mapper.hpp"
-#include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/sensor/state_archive.hpp"
 
 namespace masked_mapper {
 

@@ -6,7 +6,7 @@
 
 #include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
-#include "masked_mapper/motion/wheel_noise.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
-#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "masked_mapper/motion/floor_acceleration.hpp"
+#include "floor_acceleration.hpp"
 
 namespace masked_mapper {
 

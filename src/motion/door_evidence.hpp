@@ -7,7 +7,7 @@
 #include <deque>
 #include <optional>
 
-#include "masked_mapper/motion/floor_lidar.hpp"
+#include "floor_lidar.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/floor_acceleration.hpp"
+#include "floor_acceleration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/floor_labels.hpp"
+#include "floor_labels.hpp"
 
 #include <algorithm>
 #include <cmath>

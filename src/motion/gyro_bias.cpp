@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/gyro_bias.hpp"
+#include "gyro_bias.hpp"
 
 #include <algorithm>
 #include <cmath>

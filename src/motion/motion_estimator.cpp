@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "dead_reckoning.hpp"
+#include "gyro_bias.hpp"
 #include "masked_mapper/sensor/straightened_scan.hpp"
+#include "scan_odometry.hpp"
+#include "wheel_noise.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -22,7 +27,51 @@ LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double 
                       is_known ? SteadyMotion(T_before_now, seconds) : SteadyMotion(Pose2{}, 1.0));
 }
 
-MotionEstimator::MotionEstimator(const MotionOptions& options)
+class MotionEstimator::Impl {
+ public:
+  explicit Impl(const MotionOptions& options);
+
+  void Observe(const OdometryReading& reading);
+  void Observe(const LaserScan& scan, bool must_match);
+  void StartNode() { T_node_robot_ = UncertainPose2{}; }
+  void EnterTransit();
+  void LeaveTransit();
+
+  const Pose2& T_odom_robot() const { return T_odom_robot_; }
+  const UncertainPose2& T_node_robot() const { return T_node_robot_; }
+
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
+            last_step_s_, advance_m_, in_transit_, was_heard_, is_heard_, T_odom_robot_,
+            T_node_robot_);
+  }
+
+ private:
+  void RestartScans();
+  bool HearsWheels(const LaserScan& scan);
+  UncertainPose2 StepWithoutWheels(double stamp) const;
+  UncertainPose2 StepWithoutTurns(double stamp) const;
+  void NoteAdvance(double wheel_travel_m, double advance_m);
+  void LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected);
+
+  MotionOptions options_;
+  DeadReckoning wheels_;  ///< since the scan before
+  GyroBias gyro_bias_;
+  ScanOdometry scan_odometry_;
+  WheelNoise wheel_noise_;
+  std::optional<double> last_scan_stamp_;
+  UncertainPose2 last_step_;
+  double last_step_s_ = 0.0;
+  double advance_m_ = 0.0;   ///< by scans since the wheels rested; below 0 the robot backs
+  bool in_transit_ = false;  ///< since the scene was last begun anew
+  bool was_heard_ = false;   ///< the wheels, up to the scan before
+  bool is_heard_ = false;    ///< the wheels, since the scan before
+  Pose2 T_odom_robot_;
+  UncertainPose2 T_node_robot_;
+};
+
+MotionEstimator::Impl::Impl(const MotionOptions& options)
     : options_(options),
       wheels_(options.odometry),
       gyro_bias_(options.gyro_bias),
@@ -31,19 +80,19 @@ MotionEstimator::MotionEstimator(const MotionOptions& options)
   assert(options.source != MotionSource::kAuto);
 }
 
-void MotionEstimator::Observe(const OdometryReading& reading) {
+void MotionEstimator::Impl::Observe(const OdometryReading& reading) {
   wheels_.Observe(reading);
   is_heard_ = true;
   gyro_bias_.Observe(reading);
 }
 
-void MotionEstimator::RestartScans() {
+void MotionEstimator::Impl::RestartScans() {
   in_transit_ = false;
   scan_odometry_.Restart();
   wheel_noise_.Restart();
 }
 
-void MotionEstimator::LeaveTransit() {
+void MotionEstimator::Impl::LeaveTransit() {
   in_transit_ = false;
   scan_odometry_.LeaveTransit();
   wheel_noise_.Restart();
@@ -51,13 +100,13 @@ void MotionEstimator::LeaveTransit() {
 
 // What was seen of the cab on the way into it stays: a map begun anew is as good as its first scan,
 // and the robot may turn at once.
-void MotionEstimator::EnterTransit() {
+void MotionEstimator::Impl::EnterTransit() {
   in_transit_ = true;
   scan_odometry_.EnterTransit();
   wheel_noise_.Restart();
 }
 
-void MotionEstimator::LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected) {
+void MotionEstimator::Impl::LearnWheelNoise(const Pose2& by_wheels, const Pose2& corrected) {
   wheel_noise_.Observe(by_wheels, corrected, scan_odometry_.heading_sigma_rad());
   const WheelScales scales = wheel_noise_.scales();
   DeadReckoningOptions noise = options_.odometry;
@@ -68,7 +117,7 @@ void MotionEstimator::LearnWheelNoise(const Pose2& by_wheels, const Pose2& corre
 
 // Wheels tell of a step when they were heard at both ends of it. Where they come back, the way
 // meanwhile is not theirs to tell.
-bool MotionEstimator::HearsWheels(const LaserScan& scan) {
+bool MotionEstimator::Impl::HearsWheels(const LaserScan& scan) {
   if (scan.T_odom_robot) Observe(OdometryReading{scan.stamp, *scan.T_odom_robot});
   const bool hears = is_heard_ && (was_heard_ || !last_scan_stamp_);
   was_heard_ = is_heard_;
@@ -76,7 +125,7 @@ bool MotionEstimator::HearsWheels(const LaserScan& scan) {
   return hears && options_.source != MotionSource::kScans;
 }
 
-void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
+void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match) {
   if (scan.beam_time != 0.0) {
     // Of the motion during the sweep the step before is the nearest that is known.
     Observe(StraightenedBySteps(scan, last_step_.mean, last_step_s_), must_match);
@@ -117,7 +166,7 @@ void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
 
 // Ours: the speed of the step before goes on, and may change by what a robot of a person's pace
 // does.
-UncertainPose2 MotionEstimator::StepWithoutWheels(double stamp) const {
+UncertainPose2 MotionEstimator::Impl::StepWithoutWheels(double stamp) const {
   UncertainPose2 step;
   if (!last_scan_stamp_) return step;
   const double elapsed = std::max(0.0, stamp - *last_scan_stamp_);
@@ -135,7 +184,7 @@ UncertainPose2 MotionEstimator::StepWithoutWheels(double stamp) const {
 }
 
 // Ours: a robot drives forward unless scans have seen it back; it rests before it changes that.
-void MotionEstimator::NoteAdvance(double wheel_travel_m, double advance_m) {
+void MotionEstimator::Impl::NoteAdvance(double wheel_travel_m, double advance_m) {
   constexpr double kAtRest = 0.001;    // m from scan to scan
   constexpr double kRemembered = 0.1;  // m
   if (wheel_travel_m < kAtRest) advance_m = -advance_m_;
@@ -144,7 +193,7 @@ void MotionEstimator::NoteAdvance(double wheel_travel_m, double advance_m) {
 
 // The way is an arc through the turn of the step before. Wheels at rest say nothing of a turn on
 // the place.
-UncertainPose2 MotionEstimator::StepWithoutTurns(double stamp) const {
+UncertainPose2 MotionEstimator::Impl::StepWithoutTurns(double stamp) const {
   UncertainPose2 step = StepWithoutWheels(stamp);
   const double travel_m =
       (advance_m_ < -kSurelyBacking ? -1.0 : 1.0) * wheels_.T_node_robot().mean.x;
@@ -156,5 +205,25 @@ UncertainPose2 MotionEstimator::StepWithoutTurns(double stamp) const {
   step.covariance(1, 1) = by_wheels(1, 1) + aside * aside * step.covariance(2, 2);
   return step;
 }
+
+MotionEstimator::MotionEstimator(const MotionOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
+MotionEstimator::~MotionEstimator() = default;
+MotionEstimator::MotionEstimator(MotionEstimator&&) noexcept = default;
+MotionEstimator& MotionEstimator::operator=(MotionEstimator&&) noexcept = default;
+
+void MotionEstimator::Observe(const OdometryReading& reading) { impl_->Observe(reading); }
+void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
+  impl_->Observe(scan, must_match);
+}
+void MotionEstimator::StartNode() { impl_->StartNode(); }
+void MotionEstimator::EnterTransit() { impl_->EnterTransit(); }
+void MotionEstimator::LeaveTransit() { impl_->LeaveTransit(); }
+
+const Pose2& MotionEstimator::T_odom_robot() const { return impl_->T_odom_robot(); }
+const UncertainPose2& MotionEstimator::T_node_robot() const { return impl_->T_node_robot(); }
+
+void MotionEstimator::Serialize(StateWriter& archive) { impl_->Serialize(archive); }
+void MotionEstimator::Serialize(StateReader& archive) { impl_->Serialize(archive); }
 
 }  // namespace masked_mapper

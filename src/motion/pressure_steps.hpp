@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "masked_mapper/motion/floor_pressure.hpp"
-#include "masked_mapper/motion/pressure_heights.hpp"
+#include "floor_pressure.hpp"
+#include "pressure_heights.hpp"
 
 namespace masked_mapper {
 

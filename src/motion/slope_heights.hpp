@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "masked_mapper/motion/pressure_heights.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
+#include "pressure_heights.hpp"
+#include "wheel_track.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/wheel_track.hpp"
+#include "wheel_track.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/mapping/state_archive.hpp"
+#include "masked_mapper/sensor/state_archive.hpp"
 
 namespace masked_mapper {
 namespace {

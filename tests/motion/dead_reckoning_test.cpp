@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "motion/dead_reckoning.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/floor_acceleration.hpp"
+#include "motion/floor_acceleration.hpp"
 
 #include <gtest/gtest.h>
 

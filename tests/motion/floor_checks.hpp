@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_timeline.hpp"
-#include "masked_mapper/motion/pressure_heights.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
+#include "motion/pressure_heights.hpp"
 #include "motion/synthetic_drive.hpp"
+#include "motion/wheel_track.hpp"
 
 namespace masked_mapper {
 

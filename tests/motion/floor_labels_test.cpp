@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/floor_labels.hpp"
+#include "motion/floor_labels.hpp"
 
 #include <gtest/gtest.h>
 

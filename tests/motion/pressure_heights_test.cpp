@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/pressure_heights.hpp"
+#include "motion/pressure_heights.hpp"
 
 #include <gtest/gtest.h>
 

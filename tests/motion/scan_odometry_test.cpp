@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/scan_odometry.hpp"
+#include "motion/scan_odometry.hpp"
 
 #include <gtest/gtest.h>
 

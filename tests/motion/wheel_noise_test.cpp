@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/wheel_noise.hpp"
+#include "motion/wheel_noise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -60,7 +60,7 @@ class LoopCloser {
   /// together where late closures are to be believed.
   void Finish();
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp); after the map's closures.
+  /// The state, for a checkpoint (sensor/state_archive.hpp); after the map's closures.
   template <class Archive>
   void Serialize(Archive& archive) {
     validator_.Serialize(archive, map_.closures);

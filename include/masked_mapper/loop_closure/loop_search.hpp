@@ -56,7 +56,7 @@ class LoopSearch {
                                      NodeId from, NodeId to, double max_trace,
                                      const RemovedSteps& removed);
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp); `closures` as given to Find().
+  /// The state, for a checkpoint (sensor/state_archive.hpp); `closures` as given to Find().
   template <class Archive>
   void Serialize(Archive& archive, const std::vector<Closure>& closures) {
     archive(closures_of_);

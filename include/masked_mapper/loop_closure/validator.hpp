@@ -80,7 +80,7 @@ class LoopValidator {
   std::vector<ClosureId> Judge(const PoseGraph& graph, const std::vector<ClosureId>& matches,
                                std::vector<Closure>& closures);
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp); `closures` as given to Judge().
+  /// The state, for a checkpoint (sensor/state_archive.hpp); `closures` as given to Judge().
   template <class Archive>
   void Serialize(Archive& archive, const std::vector<Closure>& closures) {
     archive(standings_, waiting_, ties_);

@@ -10,8 +10,7 @@
 #include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
-#include "masked_mapper/motion/floor_tracker.hpp"
-#include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
 

@@ -6,8 +6,8 @@
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
-#include "masked_mapper/motion/floor_tracker.hpp"
-#include "masked_mapper/motion/motion_estimator.hpp"
+#include "masked_mapper/motion/floor_options.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
 

@@ -6,14 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 
 namespace masked_mapper {
-
-struct StoreyOptions {
-  double min_gap = 2.4;         ///< m between two floors at least
-  double typical_height = 3.5;  ///< m between floors, where nothing measures it
-};
 
 /// The robot was between floors from `start` (minus infinity: from before the log) to `end` (plus
 /// infinity: past the end of the log).

@@ -54,7 +54,7 @@ class PoseGraphOptimizer {
   /// summary tells of the last part that was solved; no iterations if nothing had to move.
   OptimizationSummary Update(PoseGraph& graph);
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (sensor/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(known_edges_);

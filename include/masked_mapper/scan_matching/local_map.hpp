@@ -67,7 +67,7 @@ class LocalMap {
 
   std::size_t scans() const { return scans_; }
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp). What is known of a cell's
+  /// The state, for a checkpoint (sensor/state_archive.hpp). What is known of a cell's
   /// surroundings follows from its points.
   template <class Archive>
   void Serialize(Archive& archive) {

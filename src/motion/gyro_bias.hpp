@@ -5,16 +5,10 @@
 
 #include <optional>
 
-#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "dead_reckoning.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
-
-struct GyroBiasOptions {
-  double rest_m = 1e-4;              ///< travel between two readings, below which wheels stand
-  double most_deg_per_s = 0.05;      ///< turning faster than this is a robot that turns
-  double first_seconds = 10.0;       ///< weight of no bias before anything was seen
-  double remembered_seconds = 60.0;  ///< of rest, after which what was seen fades
-};
 
 class GyroBias {
  public:
@@ -26,7 +20,7 @@ class GyroBias {
   /// What the heading drifts, radians per second.
   double rate() const { return rate_; }
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (sensor/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(last_, rate_, seconds_);

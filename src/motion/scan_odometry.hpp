@@ -8,31 +8,11 @@
 #include <optional>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-struct ScanOdometryOptions {
-  LocalMapOptions map;
-  double match_distance_m = 0.04;     ///< travel below which a scan is not matched: wheels suffice
-  double match_angle_deg = 0.2;       ///< and turn
-  double keyframe_distance_m = 0.15;  ///< travel from one scan in the local map to the next
-  double keyframe_angle_deg = 12.0;   ///< or turn
-  int keyframes_per_map = 60;         ///< after which the next local map is begun; two overlap
-  double decorrelation_distance_m = 1.0;  ///< travel over which alignments err independently
-  double decorrelation_angle_deg = 30.0;  ///< or turn
-  double transit_reach_m = 2.5;  ///< in transit only walls this near: beyond the door floors differ
-  double min_inlier_share = 0.5;     ///< below it other guesses are tried
-  double repeat_difference_m = 0.1;  ///< between wheels and the step before, to try both
-  double settled_deg = 0.03;  ///< sigma of the heading below which a robot at rest is not matched
-  int rest_scans = 15;        ///< nor after as many scans at rest
-  double blank_ratio =
-      40.0;  ///< of what a scan knows across and along, that makes a corridor blank
-  double overruling_sigmas = 3.0;   ///< of the wheels, beyond which a scan has to be clear:
-  double overruling_share = 0.1;    ///< of its points more must agree than where the wheels put it
-  double lost_inlier_share = 0.25;  ///< below it after all guesses the scan is not believed
-};
 
 class ScanOdometry {
  public:
@@ -65,7 +45,7 @@ class ScanOdometry {
   /// Scans in the local map; 0: there is none.
   std::size_t map_scans() const { return maps_.current ? maps_.current->scans() : 0; }
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (sensor/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(path_.T_map_robot, maps_.T_map_keyframe, path_.T_matched_robot, path_.T_map_matched,

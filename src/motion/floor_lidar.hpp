@@ -13,27 +13,13 @@
 #include <optional>
 #include <vector>
 
+#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/sensor/observation.hpp"
+#include "wheel_track.hpp"
 
 namespace masked_mapper {
-
-struct FloorLidarOptions {
-  double wall_distance_m = 3.5;    ///< m, to the walls of a cab at most
-  double max_area_m2 = 9.0;        ///< m^2, of a cab at most
-  double leak_share = 0.03;        ///< of beams that may pass gaps of doors
-  double closed_s = 4.0;           ///< s for which doors are closed for a ride at least
-  double cab_radius = 0.25;        ///< m within which a robot stays while it turns round in a cab
-  double door_distance_m = 2.5;    ///< m from the cab's middle: surely outside its door
-  double way_m = 6.0;              ///< m of the way in and of the way out that are looked at
-  double scene_radius_m = 10.0;    ///< m from the cab's middle, up to which walls are compared
-  double other_scene_share = 0.4;  ///< of walls seen alike at most: another scene
-  double key_distance_m = 0.4;     ///< m, or ...
-  double key_angle_deg = 20.0;     ///< ... deg between the scans kept of a way
-  double agree_m = 0.3;            ///< m between two views of the same wall at most
-};
 
 /// Whether the scan sees nothing but walls close around it.
 bool IsClosedBox(const LaserScan& scan, const FloorLidarOptions& options);

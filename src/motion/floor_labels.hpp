@@ -7,17 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/observation.hpp"
+#include "wheel_track.hpp"
 
 namespace masked_mapper {
-
-struct FloorLabelOptions {
-  double late_s = 60.0;       ///< s by which a label may be late or early, where none says `-`
-  double cab_radius = 0.25;   ///< m within which a robot stays while it turns round in a cab
-  double least_stay_s = 4.0;  ///< s that wheels rest in an elevator at least
-};
 
 /// A label that cannot be a file's name is the user's fault: throws InputError.
 void CheckFloorLabel(const FloorLabel& label);

@@ -7,15 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
-
-struct PressureHeightOptions {
-  double pressure_pa_per_m = 12.0;  ///< Pa less per metre up, near sea level
-  double max_height = 500.0;        ///< m from the median height; what is beyond is no reading
-  double spike_height = 1.5;        ///< m, by which a lone spell may not leave its neighbours
-};
 
 /// One spell.
 struct HeightSample {

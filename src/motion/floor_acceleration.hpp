@@ -8,24 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/motion/floor_pressure.hpp"
+#include "floor_pressure.hpp"
+#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
 #include "masked_mapper/sensor/observation.hpp"
+#include "wheel_track.hpp"
 
 namespace masked_mapper {
-
-struct FloorAccelerationOptions {
-  double spell_s = 0.1;     ///< s, over which readings are averaged
-  double pulse = 0.12;      ///< m/s^2, for longer than `pulse_s`: the cab speeds up or slows down
-  double pulse_s = 0.4;     ///< s
-  double rest_speed = 0.2;  ///< m/s left after the last pulse of a ride at most ...
-  double rest_share = 0.3;  ///< ... or this share of its highest speed
-  double longest_ride_s = 300;  ///< s
-  double cab_radius = 0.25;     ///< m within which a robot stays while it turns round in a cab
-  double least_stay_s = 6.0;    ///< s that wheels rest for a ride and its doors at least
-  FloorPressureOptions stairs;  ///< how steps are found in what the pitch makes of heights
-};
 
 /// Vertical acceleration over the drive, thinned as it comes.
 class AccelerationTrack {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_transit.hpp"
-#include "masked_mapper/motion/wheel_track.hpp"
+#include "wheel_track.hpp"
 
 namespace masked_mapper {
 

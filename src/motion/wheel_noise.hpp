@@ -5,19 +5,11 @@
 // of its odometry as given; this is ours.
 #pragma once
 
+#include "dead_reckoning.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
-#include "masked_mapper/motion/dead_reckoning.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {
-
-struct WheelNoiseOptions {
-  double window_m = 1.0;             ///< travel over which wheels and scans are compared
-  double window_deg = 45.0;          ///< or turn, whichever comes first
-  double sure_sigma_deg = 0.05;      ///< of a scan's heading, above which it is no measure
-  double least_scale = 0.05;         ///< of the heading sigmas of dead reckoning
-  double first_windows = 2.0;        ///< weight of those sigmas before anything was seen
-  double remembered_windows = 60.0;  ///< after which what was seen fades
-};
 
 /// Factors of the heading sigmas of dead reckoning, at most 1.
 struct WheelScales {
@@ -38,7 +30,7 @@ class WheelNoise {
 
   WheelScales scales() const;
 
-  /// The state, for a checkpoint (mapping/state_archive.hpp).
+  /// The state, for a checkpoint (sensor/state_archive.hpp).
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(travel_.mean, travel_.windows, turn_.mean, turn_.windows, runs_, travelled_m_,
