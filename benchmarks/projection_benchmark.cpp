@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "masked_mapper/loop_closure/candidates.hpp"
-#include "masked_mapper/loop_closure/validator.hpp"
+#include "loop_closure/validator.hpp"
+#include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
 
 namespace masked_mapper {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/scan_matching/correlative_search.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "scan_matching/correlative_search.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -21,7 +21,6 @@
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
-#include "masked_mapper/scan_matching/correlative_search.hpp"
 #include "masked_mapper/text/number_text.hpp"
 
 namespace masked_mapper {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "masked_mapper/map/surroundings.hpp"
-#include "masked_mapper/scan_matching/correlative_search.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "masked_mapper/geometry/mahalanobis.hpp"
-#include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
-#include "masked_mapper/scan_matching/correlative_search.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "known_map.hpp"
 #include "masked_mapper/loop_closure/closure_matcher.hpp"
-#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 
 namespace masked_mapper {
 

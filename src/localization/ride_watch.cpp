@@ -2,6 +2,7 @@
 #include "ride_watch.hpp"
 
 #include <cmath>
+#include <deque>
 #include <variant>
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/candidates.hpp"
+#include "masked_mapper/loop_closure/loop_closer.hpp"
 
 #include <algorithm>
 #include <tuple>

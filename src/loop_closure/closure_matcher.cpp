@@ -6,12 +6,18 @@
 #include <cmath>
 #include <optional>
 
+#include "submaps.hpp"
+
 namespace masked_mapper {
 
 ClosureMatcher::ClosureMatcher(const MatcherOptions& matcher, const SubmapOptions& submaps,
                                const AmbiguityOptions& ambiguity, bool refine,
                                const BuildingMap& map)
-    : ambiguity_(ambiguity), refine_(refine), matcher_(matcher), submaps_(submaps, map) {}
+    : ambiguity_(ambiguity),
+      refine_(refine),
+      matcher_(matcher),
+      submaps_(std::make_unique<Submaps>(submaps, map)) {}
+ClosureMatcher::~ClosureMatcher() = default;
 
 std::vector<Closure> ClosureMatcher::Match(const std::vector<ClosureOffer>& offers, GuessIs guess) {
   std::vector<MatchPair> pairs;
@@ -47,12 +53,16 @@ std::vector<Closure> ClosureMatcher::Match(const std::vector<ClosureOffer>& offe
   return closures;
 }
 
+ScanPoints::ConstPtr ClosureMatcher::PointsAround(NodeId node) const {
+  return submaps_->PointsAround(node);
+}
+
 void ClosureMatcher::RefineAndBelieve(const ScanPoints& points_in_newer, Closure& closure) {
   closure.state = ClosureState::kHypothesis;
   // 3. Refine.
   if (refine_) {
     const std::optional<SubmapMatch> refined =
-        submaps_.Refine(closure.older, points_in_newer, closure.T_older_newer);
+        submaps_->Refine(closure.older, points_in_newer, closure.T_older_newer);
     if (!refined) {
       closure.reason = ClosureReason::kDoesNotFit;
       return;

@@ -4,14 +4,63 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/loop_closure/closure_matcher.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/optimization/closure_audit.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+#include "open_revisits.hpp"
+#include "submaps.hpp"
+#include "validator.hpp"
 
 namespace masked_mapper {
 
-LoopCloser::LoopCloser(const LoopClosureOptions& options, BuildingMap& map,
+class LoopCloser::Impl {
+ public:
+  Impl(const LoopClosureOptions& options, BuildingMap& map, ReferencePoints reference);
+
+  std::size_t Close(NodeId new_node, const std::vector<Candidate>& candidates);
+  void Finish();
+
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    validator_.Serialize(archive, map_.closures);
+    archive(optimizer_);
+  }
+
+ private:
+  using NodePairs = std::set<std::pair<NodeId, NodeId>>;  ///< older, newer
+
+  std::vector<ClosureId> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  void Solve();
+  void CloseLate();
+  void CloseOpenVotes();
+  void CloseLateByWheels();
+  /// Of pairs that are not among `tried`, which they become. Returns how many closed.
+  std::size_t CloseOpenRevisits(NodePairs& tried);
+  bool CloseRevisit(NodeId newer, NodeId older);
+  bool CanBeOne(const Closure& closure) const;
+  bool AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const;
+  bool FitsTheMap(const Closure& closure) const;
+  Pose2 MapBetween(NodeId from, NodeId to) const;
+  std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
+  void EnterLate(ClosureId id);
+  void Audit();
+
+  const LoopClosureOptions& options_;
+  BuildingMap& map_;
+  ReferencePoints reference_;
+  ClosureMatcher matcher_;
+  ClosureMatcher late_matcher_;  ///< its references are other points of the same nodes
+  LoopValidator validator_;
+  PoseGraphOptimizer optimizer_;
+  NodePairs forbidden_;  ///< by hand
+};
+
+LoopCloser::Impl::Impl(const LoopClosureOptions& options, BuildingMap& map,
                        ReferencePoints reference)
     : options_(options),
       map_(map),
@@ -27,7 +76,7 @@ LoopCloser::LoopCloser(const LoopClosureOptions& options, BuildingMap& map,
   }
 }
 
-std::size_t LoopCloser::Close(NodeId new_node, const std::vector<Candidate>& candidates) {
+std::size_t LoopCloser::Impl::Close(NodeId new_node, const std::vector<Candidate>& candidates) {
   const std::vector<ClosureId> matches = MatchScans(new_node, candidates);
   std::vector<ClosureId> validated;
   {
@@ -41,8 +90,8 @@ std::size_t LoopCloser::Close(NodeId new_node, const std::vector<Candidate>& can
   return validated.size();
 }
 
-std::vector<ClosureId> LoopCloser::MatchScans(NodeId new_node,
-                                              const std::vector<Candidate>& candidates) {
+std::vector<ClosureId> LoopCloser::Impl::MatchScans(NodeId new_node,
+                                                    const std::vector<Candidate>& candidates) {
   const StageTimer timer(map_.seconds.matching);
   const ScanPoints::ConstPtr points_in_newer = matcher_.submaps().PointsAt(new_node);
   std::vector<ClosureOffer> offers;
@@ -62,12 +111,12 @@ std::vector<ClosureId> LoopCloser::MatchScans(NodeId new_node,
   return matches;
 }
 
-void LoopCloser::Solve() {
+void LoopCloser::Impl::Solve() {
   const StageTimer timer(map_.seconds.optimisation);
   Optimize(options_.optimizer.solver, map_.graph);
 }
 
-void LoopCloser::CloseLate() {
+void LoopCloser::Impl::CloseLate() {
   const StageTimer timer(map_.seconds.matching);
   CloseOpenVotes();
   NodePairs tried;
@@ -76,7 +125,7 @@ void LoopCloser::CloseLate() {
 
 // Wheels alone leave the map sure only about what is closed already. What closes moves the map, and
 // brings others near that were not; each pair is tried once.
-void LoopCloser::CloseLateByWheels() {
+void LoopCloser::Impl::CloseLateByWheels() {
   constexpr int kMostRounds = 50;
   NodePairs tried;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -93,7 +142,7 @@ void LoopCloser::CloseLateByWheels() {
 // What too few loops spoke for while the map was being made is looked at once more in the map that
 // came of it: the pair is matched again from its optimised poses, and enters where that moves it by
 // next to nothing.
-void LoopCloser::CloseOpenVotes() {
+void LoopCloser::Impl::CloseOpenVotes() {
   std::vector<ClosureId> open;
   for (std::size_t i = 0; i < map_.closures.size(); ++i) {
     const Closure& closure = map_.closures[i];
@@ -126,25 +175,25 @@ void LoopCloser::CloseOpenVotes() {
   }
 }
 
-bool LoopCloser::CanBeOne(const Closure& closure) const {
+bool LoopCloser::Impl::CanBeOne(const Closure& closure) const {
   return closure.older != closure.newer &&
          map_.graph.node(closure.older).floor == map_.graph.node(closure.newer).floor;
 }
 
-bool LoopCloser::FitsTheMap(const Closure& closure) const {
+bool LoopCloser::Impl::FitsTheMap(const Closure& closure) const {
   const Pose2 T_map = MapBetween(closure.older, closure.newer);
   const Pose2& T_match = closure.T_older_newer.mean;
   return Distance(T_match, T_map) <= options_.polish.most_m &&
          std::abs(WrapAngle(T_match.theta - T_map.theta)) <= DegToRad(options_.polish.most_deg);
 }
 
-Pose2 LoopCloser::MapBetween(NodeId from, NodeId to) const {
+Pose2 LoopCloser::Impl::MapBetween(NodeId from, NodeId to) const {
   return Between(map_.graph.node(from).T_world_robot, map_.graph.node(to).T_world_robot);
 }
 
 // From the map, and as sure as the surest way through the graph; none where that cannot vouch for a
 // closure.
-std::optional<UncertainPose2> LoopCloser::SureWay(NodeId from, NodeId to) const {
+std::optional<UncertainPose2> LoopCloser::Impl::SureWay(NodeId from, NodeId to) const {
   for (const ProjectedNode& projected :
        DijkstraProjection(map_.graph, from, {options_.validator.sure_loop_trace})) {
     if (projected.node != to) continue;
@@ -154,12 +203,13 @@ std::optional<UncertainPose2> LoopCloser::SureWay(NodeId from, NodeId to) const 
 }
 
 // As a loop agrees in the validator.
-bool LoopCloser::AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const {
+bool LoopCloser::Impl::AgreesWith(const UncertainPose2& T_older_newer,
+                                  const Closure& closure) const {
   return MahalanobisFromIdentity(Inverse(T_older_newer) * closure.T_older_newer) <
          options_.validator.max_loop_error;
 }
 
-void LoopCloser::EnterLate(ClosureId id) {
+void LoopCloser::Impl::EnterLate(ClosureId id) {
   Closure& closure = map_.closures[static_cast<std::size_t>(id)];
   closure.state = ClosureState::kValidated;
   closure.reason = ClosureReason::kFitsTheMap;
@@ -169,7 +219,7 @@ void LoopCloser::EnterLate(ClosureId id) {
 // Corridors between masked places, passed again: what no mask offered is offered now, where the map
 // has two nodes at one place and no walk along the graph says so. A sure way through the graph has
 // to vouch for it, as in the validator.
-std::size_t LoopCloser::CloseOpenRevisits(NodePairs& tried) {
+std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
   const std::vector<Edge>& edges = map_.graph.edges();
   const bool any_closed = std::any_of(
       edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kClosure; });
@@ -194,7 +244,7 @@ std::size_t LoopCloser::CloseOpenRevisits(NodePairs& tried) {
   return entered;
 }
 
-bool LoopCloser::CloseRevisit(NodeId newer, NodeId older) {
+bool LoopCloser::Impl::CloseRevisit(NodeId newer, NodeId older) {
   const std::optional<UncertainPose2> sure_way = SureWay(older, newer);
   if (!sure_way || forbidden_.count({older, newer}) != 0) return false;
   const ScanPoints::ConstPtr points_in_newer = late_matcher_.submaps().PointsAt(newer);
@@ -221,7 +271,7 @@ bool LoopCloser::CloseRevisit(NodeId newer, NodeId older) {
 }
 
 // With all closures in, those that disagree with the rest go before the map is written.
-void LoopCloser::Audit() {
+void LoopCloser::Impl::Audit() {
   const StageTimer timer(map_.seconds.optimisation);
   // What somebody added by hand is not for the audit to take away.
   const std::vector<Edge>& edges = map_.graph.edges();
@@ -247,7 +297,7 @@ void LoopCloser::Audit() {
   Optimize(options_.optimizer.solver, map_.graph);
 }
 
-void LoopCloser::Finish() {
+void LoopCloser::Impl::Finish() {
   Solve();
   if (options_.laid_out_by_scans) {
     CloseLate();
@@ -257,5 +307,19 @@ void LoopCloser::Finish() {
   }
   Audit();
 }
+
+LoopCloser::LoopCloser(const LoopClosureOptions& options, BuildingMap& map,
+                       ReferencePoints reference)
+    : impl_(std::make_unique<Impl>(options, map, std::move(reference))) {}
+LoopCloser::~LoopCloser() = default;
+
+std::size_t LoopCloser::Close(NodeId new_node, const std::vector<Candidate>& candidates) {
+  return impl_->Close(new_node, candidates);
+}
+
+void LoopCloser::Finish() { impl_->Finish(); }
+
+void LoopCloser::Serialize(StateWriter& archive) { impl_->Serialize(archive); }
+void LoopCloser::Serialize(StateReader& archive) { impl_->Serialize(archive); }
 
 }  // namespace masked_mapper

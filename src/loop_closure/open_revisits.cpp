@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/open_revisits.hpp"
+#include "open_revisits.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/submaps.hpp"
+#include "submaps.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/validator.hpp"
+#include "validator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "masked_mapper/scan_matching/correlative_search.hpp"
-
 namespace masked_mapper {
 namespace {
 

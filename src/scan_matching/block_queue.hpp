@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "correlative_search.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/block_sums.hpp"
+#include "block_sums.hpp"
 
 #include <algorithm>
 #include <cmath>

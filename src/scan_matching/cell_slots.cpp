@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/cell_slots.hpp"
+#include "cell_slots.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "correlative_search.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <unordered_map>
 
 #include "block_queue.hpp"
 #include "prior_chi2.hpp"
@@ -239,36 +238,6 @@ Eigen::Matrix3d PriorRoot(const Eigen::Matrix3d& covariance, const SearchGrid& g
       factor.matrixL().solve(Eigen::Matrix3d::Identity());  // lower triangular
   const Eigen::Matrix3d root = inverse.colwise().reverse().rowwise().reverse();
   return root.allFinite() ? root : Eigen::Matrix3d::Zero();
-}
-
-std::vector<Eigen::Vector2d> ThinPoints(const ScanPoints& points, double spacing_m,
-                                        double max_range_m) {
-  std::vector<Eigen::Vector2d> thinned;
-  std::vector<double> counts;
-  std::unordered_map<std::int64_t, std::size_t> index_of_cell;  // looked up only, never walked
-  index_of_cell.reserve(points.size());
-  for (const pcl::PointXY& point : points) {
-    const Eigen::Vector2d position(point.x, point.y);
-    if (!(position.norm() <= max_range_m)) continue;
-    if (!(spacing_m > 0.0)) {
-      thinned.push_back(position);
-      counts.push_back(1.0);
-      continue;
-    }
-    const auto x = static_cast<std::int64_t>(std::floor(position.x() / spacing_m));
-    const auto y = static_cast<std::int64_t>(std::floor(position.y() / spacing_m));
-    const auto [cell, is_new] =
-        index_of_cell.try_emplace(x * (std::int64_t{1} << 32) + y, thinned.size());
-    if (is_new) {
-      thinned.push_back(position);
-      counts.push_back(1.0);
-    } else {
-      thinned[cell->second] += position;
-      counts[cell->second] += 1.0;
-    }
-  }
-  for (std::size_t i = 0; i < thinned.size(); ++i) thinned[i] /= counts[i];
-  return thinned;
 }
 
 }  // namespace masked_mapper

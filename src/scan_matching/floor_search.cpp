@@ -7,9 +7,10 @@
 #include <tuple>
 
 #include "block_queue.hpp"
-#include "masked_mapper/scan_matching/block_sums.hpp"
-#include "masked_mapper/scan_matching/correlative_search.hpp"
-#include "masked_mapper/scan_matching/refine_match.hpp"
+#include "block_sums.hpp"
+#include "correlative_search.hpp"
+#include "lookup_table.hpp"
+#include "refine_match.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -187,6 +188,10 @@ FloorSearch::FloorSearch(const ScanPoints& points_in_world, const FloorSearchOpt
                        area <= kMostCells * options.resolution_m * options.resolution_m;
   if (is_sane) table_ = std::make_unique<LookupTable>(points_in_world, table);
 }
+
+FloorSearch::~FloorSearch() = default;
+FloorSearch::FloorSearch(FloorSearch&&) noexcept = default;
+FloorSearch& FloorSearch::operator=(FloorSearch&&) noexcept = default;
 
 std::vector<Eigen::Vector2d> FloorSearch::Thinned(const ScanPoints& points_in_place) const {
   return ThinPoints(points_in_place, options_.point_spacing_m, options_.max_range_m);

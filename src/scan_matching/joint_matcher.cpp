@@ -9,8 +9,11 @@
 #include <mutex>
 #include <utility>
 
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "block_sums.hpp"
+#include "correlative_search.hpp"
+#include "lookup_table.hpp"
 #include "masked_mapper/scan_matching/for_each.hpp"
+#include "refine_match.hpp"
 
 namespace masked_mapper {
 namespace {

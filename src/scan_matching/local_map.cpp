@@ -3,9 +3,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
+
+#include "cell_slots.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -14,14 +18,93 @@ double Square(double value) { return value * value; }
 
 }  // namespace
 
-LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
+class LocalMap::Impl {
+ public:
+  Impl(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map);
+
+  void Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot);
+  Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                  const Eigen::Matrix3d& prior_information) const;
+  Alignment AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                      const Eigen::Matrix3d& prior_information) const;
+  double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
+                   double sigma_m) const;
+  std::size_t scans() const { return scans_; }
+
+  /// What is known of a cell's surroundings follows from its points.
+  template <class Archive>
+  void Serialize(Archive& archive) {
+    std::vector<std::int32_t> cells = slots_.cells();
+    archive(corner_, cells, moments_, scans_, front_rad_);
+    if constexpr (Archive::kReads) {
+      if (moments_.size() != kSides * cells.size()) {
+        archive.Refuse("a local map that does not hold together");
+      }
+      if (!slots_.Take(cells)) archive.Refuse("a local map with a cell outside, or one twice");
+      known_.assign(cells.size(), {});
+    }
+  }
+
+ private:
+  static constexpr std::size_t kSides = 4;
+
+  struct Moments {
+    double count = 0.0;
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
+
+    void operator+=(const Moments& other);
+
+    template <class Archive>
+    void Serialize(Archive& archive) {
+      archive(count, x, y, xx, xy, yy);
+    }
+  };
+  struct Distribution {
+    float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
+    float normal_x = 0.0F, normal_y = 0.0F;  ///< direction of the smaller variance
+    float small = 0.0F, large = 0.0F;        ///< variances, m^2
+    bool is_line = false;
+    bool is_known = false;
+  };
+  /// What is known of a cell's surroundings: of each side, and of all of them together.
+  struct Surroundings {
+    std::array<Distribution, kSides + 1> of_side;
+    std::uint8_t settled = 0;  ///< a bit for each side: no point came since it was worked out
+  };
+  using Cell = CellSlots::Cell;
+
+  Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                  const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
+  bool FindCell(double x, double y, Cell* cell) const;
+  std::size_t AddSlot(Cell cell);
+  std::vector<std::uint8_t> SidesOf(const FacedPoints& points, double theta) const;
+  std::size_t MarkAround(Cell cell, std::size_t side);
+  const Distribution& Seen(std::size_t slot, std::size_t side) const;
+  const Distribution& Settled(std::size_t slot, std::size_t side) const;
+  Moments SumAround(Cell cell, std::size_t side) const;
+  void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
+  double Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
+              const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+              Eigen::Vector3d& gradient) const;
+
+  LocalMapOptions options_;
+  double cells_per_m_;
+  double front_rad_ = 0.0;  ///< surfaces that face within 90 deg of it are in front
+  Eigen::Vector2d corner_;  ///< of cell (0, 0), in map
+  CellSlots slots_;
+  std::vector<Moments> moments_;             ///< of each slot, side by side
+  mutable std::vector<Surroundings> known_;  ///< of each slot, worked out where it is looked at
+  std::size_t scans_ = 0;
+};
+
+LocalMap::Impl::Impl(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
     : options_(options),
       cells_per_m_(1.0 / options.cell_m),
       slots_(2 * static_cast<int>(std::ceil(options.reach_m / options.cell_m)) + 1) {
   corner_ = center_in_map.array() - 0.5 * slots_.width() * options.cell_m;
 }
 
-void LocalMap::Moments::operator+=(const Moments& other) {
+void LocalMap::Impl::Moments::operator+=(const Moments& other) {
   count += other.count;
   x += other.x;
   y += other.y;
@@ -31,7 +114,7 @@ void LocalMap::Moments::operator+=(const Moments& other) {
 }
 
 // A margin of a window is left out, so that neighbours need no check of their own.
-bool LocalMap::FindCell(double x, double y, Cell* cell) const {
+bool LocalMap::Impl::FindCell(double x, double y, Cell* cell) const {
   const double column = (x - corner_.x()) * cells_per_m_;
   const double row = (y - corner_.y()) * cells_per_m_;
   const double least = options_.window_cells;
@@ -41,7 +124,7 @@ bool LocalMap::FindCell(double x, double y, Cell* cell) const {
   return true;
 }
 
-std::size_t LocalMap::AddSlot(Cell cell) {
+std::size_t LocalMap::Impl::AddSlot(Cell cell) {
   const std::size_t slot = slots_.Use(cell);
   if (slot == known_.size()) {
     moments_.resize(moments_.size() + kSides);
@@ -50,7 +133,7 @@ std::size_t LocalMap::AddSlot(Cell cell) {
   return slot;
 }
 
-std::vector<std::uint8_t> LocalMap::SidesOf(const FacedPoints& points, double theta) const {
+std::vector<std::uint8_t> LocalMap::Impl::SidesOf(const FacedPoints& points, double theta) const {
   const auto c = static_cast<float>(std::cos(front_rad_ - theta));
   const auto s = static_cast<float>(std::sin(front_rad_ - theta));
   std::vector<std::uint8_t> sides(points.size());
@@ -62,7 +145,7 @@ std::vector<std::uint8_t> LocalMap::SidesOf(const FacedPoints& points, double th
   return sides;
 }
 
-void LocalMap::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot) {
+void LocalMap::Impl::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot) {
   if (scans_ == 0) front_rad_ = FrontOf(points_in_robot, T_map_robot.theta);
   const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot.theta);
   const double c = std::cos(T_map_robot.theta);
@@ -96,7 +179,7 @@ void LocalMap::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot)
 }
 
 // Returns the slot of the cell itself.
-std::size_t LocalMap::MarkAround(Cell cell, std::size_t side) {
+std::size_t LocalMap::Impl::MarkAround(Cell cell, std::size_t side) {
   const int window = options_.window_cells;
   const auto kept = static_cast<std::uint8_t>(~((1U << side) | (1U << kSides)));
   for (int dy = -window; dy <= window; ++dy) {
@@ -108,7 +191,7 @@ std::size_t LocalMap::MarkAround(Cell cell, std::size_t side) {
 }
 
 /// The moments of a side over the window around a cell, about its center.
-LocalMap::Moments LocalMap::SumAround(Cell cell, std::size_t side) const {
+LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t side) const {
   const int window = options_.window_cells;
   Moments sum;
   for (int dy = -window; dy <= window; ++dy) {
@@ -132,7 +215,7 @@ LocalMap::Moments LocalMap::SumAround(Cell cell, std::size_t side) const {
   return sum;
 }
 
-void LocalMap::Describe(const Moments& sum, Cell cell, Distribution& d) const {
+void LocalMap::Impl::Describe(const Moments& sum, Cell cell, Distribution& d) const {
   const double mx = sum.x / sum.count;
   const double my = sum.y / sum.count;
   d.mean_x = static_cast<float>(corner_.x() + (cell.column + 0.5) * options_.cell_m + mx);
@@ -156,7 +239,8 @@ void LocalMap::Describe(const Moments& sum, Cell cell, Distribution& d) const {
   d.is_known = sum.count >= 2.0;
 }
 
-const LocalMap::Distribution& LocalMap::Settled(std::size_t slot, std::size_t side) const {
+const LocalMap::Impl::Distribution& LocalMap::Impl::Settled(std::size_t slot,
+                                                            std::size_t side) const {
   Distribution& known = known_[slot].of_side[side];
   if ((known_[slot].settled >> side & 1U) != 0) return known;
   known_[slot].settled |= static_cast<std::uint8_t>(1U << side);
@@ -172,14 +256,14 @@ const LocalMap::Distribution& LocalMap::Settled(std::size_t slot, std::size_t si
 }
 
 // The face that is seen, where it is known as a line; else all that is known of the place.
-const LocalMap::Distribution& LocalMap::Seen(std::size_t slot, std::size_t side) const {
+const LocalMap::Impl::Distribution& LocalMap::Impl::Seen(std::size_t slot, std::size_t side) const {
   const Distribution& face = Settled(slot, side);
   return face.is_line ? face : Settled(slot, kSides);
 }
 
-double LocalMap::Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
-                      const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
-                      Eigen::Vector3d& gradient) const {
+double LocalMap::Impl::Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
+                            const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+                            Eigen::Vector3d& gradient) const {
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
   const double noise = Square(sigma_m);
@@ -241,8 +325,8 @@ double LocalMap::Step(const FacedPoints& points, const std::vector<std::uint8_t>
   return inliers;
 }
 
-double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
-                           double sigma_m) const {
+double LocalMap::Impl::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
+                                 double sigma_m) const {
   if (points_in_robot.empty()) return 0.0;
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
@@ -251,21 +335,22 @@ double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_ma
          static_cast<double>(points_in_robot.size());
 }
 
-Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
-                          const Eigen::Matrix3d& prior_information) const {
+Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                                const Eigen::Matrix3d& prior_information) const {
   return Align(points_in_robot, T_map_robot_guess, prior_information,
                options_.guess_outlier_sigmas);
 }
 
-Alignment LocalMap::AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
-                              const Eigen::Matrix3d& prior_information) const {
+Alignment LocalMap::Impl::AlignHeld(const FacedPoints& points_in_robot,
+                                    const Pose2& T_map_robot_guess,
+                                    const Eigen::Matrix3d& prior_information) const {
   return Align(points_in_robot, T_map_robot_guess, prior_information,
                std::numeric_limits<double>::infinity());
 }
 
-Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
-                          const Eigen::Matrix3d& prior_information,
-                          double guess_outlier_sigmas) const {
+Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                                const Eigen::Matrix3d& prior_information,
+                                double guess_outlier_sigmas) const {
   Alignment result;
   result.T_map_robot = T_map_robot_guess;
   if (points_in_robot.empty()) return result;
@@ -305,5 +390,35 @@ Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map
   result.information = hessian / options_.covariance_inflation;
   return result;
 }
+
+LocalMap::LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map)
+    : impl_(std::make_unique<Impl>(options, center_in_map)) {}
+LocalMap::~LocalMap() = default;
+LocalMap::LocalMap(LocalMap&&) noexcept = default;
+LocalMap& LocalMap::operator=(LocalMap&&) noexcept = default;
+
+void LocalMap::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot) {
+  impl_->Add(points_in_robot, T_map_robot);
+}
+
+Alignment LocalMap::Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                          const Eigen::Matrix3d& prior_information) const {
+  return impl_->Align(points_in_robot, T_map_robot_guess, prior_information);
+}
+
+Alignment LocalMap::AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
+                              const Eigen::Matrix3d& prior_information) const {
+  return impl_->AlignHeld(points_in_robot, T_map_robot_guess, prior_information);
+}
+
+double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
+                           double sigma_m) const {
+  return impl_->Agreement(points_in_robot, T_map_robot, sigma_m);
+}
+
+std::size_t LocalMap::scans() const { return impl_->scans(); }
+
+void LocalMap::Serialize(StateWriter& archive) { impl_->Serialize(archive); }
+void LocalMap::Serialize(StateReader& archive) { impl_->Serialize(archive); }
 
 }  // namespace masked_mapper

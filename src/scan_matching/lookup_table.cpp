@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "lookup_table.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "correlative_search.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/refine_match.hpp"
+#include "refine_match.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

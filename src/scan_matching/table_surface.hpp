@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "lookup_table.hpp"
 
 namespace masked_mapper {
 

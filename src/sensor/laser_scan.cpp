@@ -2,6 +2,8 @@
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
 
 #include "masked_mapper/sensor/beam_sweep.hpp"
 
@@ -55,6 +57,36 @@ ScanPoints::Ptr AsScanPoints(const std::vector<Eigen::Vector2d>& points) {
   ScanPoints::Ptr cloud(new ScanPoints);
   for (const Eigen::Vector2d& point : points) cloud->push_back(AsPoint(point));
   return cloud;
+}
+
+std::vector<Eigen::Vector2d> ThinPoints(const ScanPoints& points, double spacing_m,
+                                        double max_range_m) {
+  std::vector<Eigen::Vector2d> thinned;
+  std::vector<double> counts;
+  std::unordered_map<std::int64_t, std::size_t> index_of_cell;  // looked up only, never walked
+  index_of_cell.reserve(points.size());
+  for (const pcl::PointXY& point : points) {
+    const Eigen::Vector2d position(point.x, point.y);
+    if (!(position.norm() <= max_range_m)) continue;
+    if (!(spacing_m > 0.0)) {
+      thinned.push_back(position);
+      counts.push_back(1.0);
+      continue;
+    }
+    const auto x = static_cast<std::int64_t>(std::floor(position.x() / spacing_m));
+    const auto y = static_cast<std::int64_t>(std::floor(position.y() / spacing_m));
+    const auto [cell, is_new] =
+        index_of_cell.try_emplace(x * (std::int64_t{1} << 32) + y, thinned.size());
+    if (is_new) {
+      thinned.push_back(position);
+      counts.push_back(1.0);
+    } else {
+      thinned[cell->second] += position;
+      counts[cell->second] += 1.0;
+    }
+  }
+  for (std::size_t i = 0; i < thinned.size(); ++i) thinned[i] /= counts[i];
+  return thinned;
 }
 
 }  // namespace masked_mapper

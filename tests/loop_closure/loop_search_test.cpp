@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/loop_search.hpp"
+#include "loop_closure/loop_search.hpp"
 
 #include <gtest/gtest.h>
 

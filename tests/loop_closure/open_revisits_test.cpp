@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/loop_closure/open_revisits.hpp"
+#include "loop_closure/open_revisits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "loop_closure/open_revisits.hpp"
 #include "mapping/ring_drive.hpp"
-#include "masked_mapper/loop_closure/open_revisits.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "scan_matching/correlative_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -179,18 +179,6 @@ TEST(PriorRoot, IsTheRootOfTheInformation) {
   EXPECT_TRUE(PriorRoot(Eigen::Matrix3d::Zero(), grid).allFinite());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(PriorRoot(Eigen::Matrix3d::Constant(nan), grid).isZero());
-}
-
-TEST(ThinPoints, LeavesOnePointPerCell) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto thinned = ThinPoints(
-      Points({{0.01, 0.01}, {5, 5}, {0.03, 0.05}, {nan, 1}, {-0.01, 0.01}, {40, 0}}), 0.1, 30.0);
-  ASSERT_EQ(thinned.size(), 3U);
-  EXPECT_NEAR(thinned[0].x(), 0.02, 1e-6);
-  EXPECT_NEAR(thinned[0].y(), 0.03, 1e-6);
-  EXPECT_NEAR(thinned[1].x(), 5.0, 1e-6);
-  EXPECT_NEAR(thinned[2].x(), -0.01, 1e-6);
-  EXPECT_EQ(ThinPoints(Points({{0.01, 0.01}, {0.01, 0.01}}), 0.0, 30.0).size(), 2U);
 }
 
 }  // namespace

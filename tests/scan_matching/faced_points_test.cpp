@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/faced_points.hpp"
+#include "masked_mapper/scan_matching/local_map.hpp"
 
 #include <gtest/gtest.h>
 

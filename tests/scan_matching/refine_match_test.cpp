@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/scan_matching/refine_match.hpp"
+#include "scan_matching/refine_match.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "masked_mapper/scan_matching/correlative_search.hpp"
+#include "scan_matching/correlative_search.hpp"
 #include "scan_matching/drawn_room.hpp"
 
 namespace masked_mapper {

@@ -2,6 +2,7 @@
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace masked_mapper {
 namespace {
@@ -54,6 +55,19 @@ TEST(LaserScan, PointsOfAnEmptyScanAreNoneNotNull) {
   const auto points = PointsInRobot(LaserScan{});
   ASSERT_NE(points, nullptr);
   EXPECT_TRUE(points->empty());
+}
+
+TEST(ThinPoints, LeavesOnePointPerCell) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto thinned = ThinPoints(
+      *AsScanPoints({{0.01, 0.01}, {5, 5}, {0.03, 0.05}, {nan, 1}, {-0.01, 0.01}, {40, 0}}), 0.1,
+      30.0);
+  ASSERT_EQ(thinned.size(), 3U);
+  EXPECT_NEAR(thinned[0].x(), 0.02, 1e-6);
+  EXPECT_NEAR(thinned[0].y(), 0.03, 1e-6);
+  EXPECT_NEAR(thinned[1].x(), 5.0, 1e-6);
+  EXPECT_NEAR(thinned[2].x(), -0.01, 1e-6);
+  EXPECT_EQ(ThinPoints(*AsScanPoints({{0.01, 0.01}, {0.01, 0.01}}), 0.0, 30.0).size(), 2U);
 }
 
 }  // namespace

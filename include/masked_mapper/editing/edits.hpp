@@ -16,7 +16,7 @@
 
 #include <string>
 
-#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {

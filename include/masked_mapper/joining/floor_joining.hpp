@@ -12,7 +12,7 @@
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
-#include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {
 

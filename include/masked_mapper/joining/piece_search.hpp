@@ -15,7 +15,7 @@
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/scan_matching/floor_search.hpp"
-#include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {
 

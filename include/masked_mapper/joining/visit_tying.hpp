@@ -6,7 +6,7 @@
 #pragma once
 
 #include "masked_mapper/joining/floor_joining.hpp"
-#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "masked_mapper/localization/map_changes.hpp"
-#include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
 #include "masked_mapper/motion/floor_options.hpp"

@@ -6,20 +6,16 @@
 //   4. believe   only what leaves no direction open (ours)
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "masked_mapper/loop_closure/submaps.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/closure.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-/// When a match is not sure enough to be a closure. A blank corridor matches itself anywhere along
-/// it, and loops of such matches agree with each other. Ours: the paper leaves it to MinScore.
-struct AmbiguityOptions {
-  double max_sigma_m = 0.2;  ///< in the least certain direction
-  double max_sigma_deg = 3.0;
-};
 
 /// A pair to be matched.
 struct ClosureOffer {
@@ -38,11 +34,14 @@ enum class GuessIs {
   kAsGoodAsAMatch  ///< from an optimised map: it is refined itself, and may tell along a corridor
 };
 
+class Submaps;
+
 class ClosureMatcher {
  public:
   /// `map` outlives this. Without `refine`, stage 3 is left out.
   ClosureMatcher(const MatcherOptions& matcher, const SubmapOptions& submaps,
                  const AmbiguityOptions& ambiguity, bool refine, const BuildingMap& map);
+  ~ClosureMatcher();
 
   /// One closure for each offer, in their order: kTooFewVotes where it passed all stages, else why
   /// it did not.
@@ -51,7 +50,10 @@ class ClosureMatcher {
   /// Stages 3 and 4 alone, from `closure.T_older_newer`, which they change.
   void RefineAndBelieve(const ScanPoints& points_in_newer, Closure& closure);
 
-  const Submaps& submaps() const { return submaps_; }
+  /// What was seen around a node, in its frame.
+  ScanPoints::ConstPtr PointsAround(NodeId node) const;
+
+  const Submaps& submaps() const { return *submaps_; }
 
  private:
   void Believe(const Eigen::Matrix3d& covariance, Closure& closure) const;
@@ -59,7 +61,7 @@ class ClosureMatcher {
   AmbiguityOptions ambiguity_;
   bool refine_;
   JointMatcher matcher_;
-  Submaps submaps_;
+  std::unique_ptr<Submaps> submaps_;
 };
 
 }  // namespace masked_mapper

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "masked_mapper/geometry/pose2.hpp"
-#include "masked_mapper/scan_matching/lookup_table.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
+
+class LookupTable;
 
 struct FloorSearchOptions {
   double resolution_m = 0.4;     ///< side of a cell, m
@@ -35,6 +36,9 @@ class FloorSearch {
   /// Of a floor too large for its cells (beyond 2 km^2, 2e8 cells or 10 km from the origin), or
   /// without a point, nothing is ever found.
   FloorSearch(const ScanPoints& points_in_world, const FloorSearchOptions& options);
+  ~FloorSearch();
+  FloorSearch(FloorSearch&&) noexcept;
+  FloorSearch& operator=(FloorSearch&&) noexcept;
 
   bool HasFloor() const { return table_ != nullptr; }
 

@@ -11,34 +11,10 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/scan_matching/block_sums.hpp"
-#include "masked_mapper/scan_matching/lookup_table.hpp"
-#include "masked_mapper/scan_matching/refine_match.hpp"
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-struct MatcherOptions {
-  LookupTableOptions table;
-  RefineOptions refine;
-  double min_score = 0.425;      ///< 0-1, the paper's MinScore
-  double window_sigmas = 3.0;    ///< half-width of the search window, in sigmas of the guess
-  double min_window_m = 0.3;     ///< half-width, m
-  double max_window_m = 6.0;     ///< half-width, m
-  double min_window_deg = 3.0;   ///< half-width, deg
-  double max_window_deg = 45.0;  ///< half-width, deg
-  double angle_step_deg = 0.5;   ///< deg between search angles
-  double point_spacing_m = 0.1;  ///< the query scan is thinned to one point per cell of this size
-  double prior_weight = 0.005;   ///< objective = score - prior_weight * chi^2 of the guess
-  std::size_t table_memory_mib = 64;  ///< budget of cached look-up tables
-  int threads = 1;
-  /// Also look for the best pose more than elsewhere_m or elsewhere_deg away from the match (along
-  /// any axis), of at least elsewhere_floor times its score. Costs about half a match more.
-  bool look_elsewhere = false;
-  double elsewhere_m = 0.5;      ///< m
-  double elsewhere_deg = 5.0;    ///< deg
-  double elsewhere_floor = 0.7;  ///< of the match's score
-};
 
 /// A second place in the window where the query fits. On a ridge, as in a corridor, it is explained
 /// by the match's covariance; one that is not makes the match ambiguous.
@@ -67,11 +43,6 @@ struct MatchResult {
   double score = 0.0;
   std::optional<Elsewhere> elsewhere;  ///< when asked for and there is one
 };
-
-/// The window of a match: window_sigmas deviations of the guess to either side, within the options'
-/// limits, along the axes of the reference frame.
-SearchGrid SearchGridFor(const UncertainPose2& T_reference_query_guess,
-                         const MatcherOptions& options);
 
 class JointMatcher {
  public:

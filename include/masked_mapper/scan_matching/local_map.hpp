@@ -10,15 +10,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/scan_matching/cell_slots.hpp"
-#include "masked_mapper/scan_matching/faced_points.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
+#include "masked_mapper/sensor/state_archive.hpp"
 
 namespace masked_mapper {
 
@@ -35,6 +33,27 @@ struct LocalMapOptions {
   double covariance_inflation = 2.0;  ///< beams of one wall err together, not each on its own
 };
 
+/// The points of a scan with the way in which the surface faces at each: made once of a scan, which
+/// may then be held against local maps and added to them any number of times.
+/// All in the robot's frame, m, in the order of the beams.
+struct FacedPoints {
+  FacedPoints() = default;
+  /// A surface is the line through the neighbours of a point, and faces the robot: beams on another
+  /// surface are none. Where there are none the point faces the robot. Not `explicit`, since points
+  /// are all that it takes.
+  FacedPoints(const ScanPoints& points_in_robot);  // NOLINT(google-explicit-constructor)
+
+  std::size_t size() const { return x.size(); }
+  bool empty() const { return x.empty(); }
+
+  std::vector<float> x, y;
+  std::vector<float> normal_x, normal_y;  ///< of any length
+};
+
+/// The heading, rad, midway between those in which most of the surfaces face, as in a building of
+/// right angles.
+double FrontOf(const FacedPoints& points, double theta);
+
 struct Alignment {
   Pose2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the scan alone, of (x, y, theta)
@@ -49,6 +68,9 @@ class LocalMap {
  public:
   /// Points will be kept within `reach_m` of `center_in_map`.
   LocalMap(const LocalMapOptions& options, const Eigen::Vector2d& center_in_map);
+  ~LocalMap();
+  LocalMap(LocalMap&&) noexcept;
+  LocalMap& operator=(LocalMap&&) noexcept;
 
   void Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot);
 
@@ -65,73 +87,15 @@ class LocalMap {
   double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
 
-  std::size_t scans() const { return scans_; }
+  std::size_t scans() const;
 
-  /// The state, for a checkpoint (sensor/state_archive.hpp). What is known of a cell's
-  /// surroundings follows from its points.
-  template <class Archive>
-  void Serialize(Archive& archive) {
-    std::vector<std::int32_t> cells = slots_.cells();
-    archive(corner_, cells, moments_, scans_, front_rad_);
-    if constexpr (Archive::kReads) {
-      if (moments_.size() != kSides * cells.size()) {
-        archive.Refuse("a local map that does not hold together");
-      }
-      if (!slots_.Take(cells)) archive.Refuse("a local map with a cell outside, or one twice");
-      known_.assign(cells.size(), {});
-    }
-  }
+  /// The state, for a checkpoint.
+  void Serialize(StateWriter& archive);
+  void Serialize(StateReader& archive);
 
  private:
-  static constexpr std::size_t kSides = 4;
-
-  struct Moments {
-    double count = 0.0;
-    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  ///< sums, about the cell's center
-
-    void operator+=(const Moments& other);
-
-    template <class Archive>
-    void Serialize(Archive& archive) {
-      archive(count, x, y, xx, xy, yy);
-    }
-  };
-  struct Distribution {
-    float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
-    float normal_x = 0.0F, normal_y = 0.0F;  ///< direction of the smaller variance
-    float small = 0.0F, large = 0.0F;        ///< variances, m^2
-    bool is_line = false;
-    bool is_known = false;
-  };
-  /// What is known of a cell's surroundings: of each side, and of all of them together.
-  struct Surroundings {
-    std::array<Distribution, kSides + 1> of_side;
-    std::uint8_t settled = 0;  ///< a bit for each side: no point came since it was worked out
-  };
-  using Cell = CellSlots::Cell;
-
-  Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
-                  const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
-  bool FindCell(double x, double y, Cell* cell) const;
-  std::size_t AddSlot(Cell cell);
-  std::vector<std::uint8_t> SidesOf(const FacedPoints& points, double theta) const;
-  std::size_t MarkAround(Cell cell, std::size_t side);
-  const Distribution& Seen(std::size_t slot, std::size_t side) const;
-  const Distribution& Settled(std::size_t slot, std::size_t side) const;
-  Moments SumAround(Cell cell, std::size_t side) const;
-  void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
-  double Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
-              const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
-              Eigen::Vector3d& gradient) const;
-
-  LocalMapOptions options_;
-  double cells_per_m_;
-  double front_rad_ = 0.0;  ///< surfaces that face within 90 deg of it are in front
-  Eigen::Vector2d corner_;  ///< of cell (0, 0), in map
-  CellSlots slots_;
-  std::vector<Moments> moments_;             ///< of each slot, side by side
-  mutable std::vector<Surroundings> known_;  ///< of each slot, worked out where it is looked at
-  std::size_t scans_ = 0;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace masked_mapper

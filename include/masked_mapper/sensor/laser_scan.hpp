@@ -65,5 +65,9 @@ void AppendTransformed(const ScanPoints& points_in_b, const Pose2& T_a_b, double
 ScanPoints::Ptr Transformed(const ScanPoints& points_in_b, const Pose2& T_a_b);
 /// Points as a cloud of the scan's point type.
 ScanPoints::Ptr AsScanPoints(const std::vector<Eigen::Vector2d>& points);
+/// One point per cell of `spacing_m` of the lattice at the origin: the mean of the finite points of
+/// the cell within `max_range_m`, in the order of their first points.
+std::vector<Eigen::Vector2d> ThinPoints(const ScanPoints& points, double spacing_m,
+                                        double max_range_m);
 
 }  // namespace masked_mapper

@@ -22,18 +22,10 @@
 #include <memory>
 #include <vector>
 
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
-
-struct LookupTableOptions {
-  double resolution_m = 0.05;  ///< side of a cell, m
-  double sigma_m = 0.1;        ///< blur, m; the paper leaves it open
-  double max_range_m = 30.0;   ///< m; points farther from the frame's origin are left out
-  double join_gap_m =
-      0.3;         ///< m; consecutive points nearer than this are joined by a line; 0: never
-  int levels = 5;  ///< of the pyramid, cells included; a small table has fewer
-};
 
 /// A rectangle of a frame, m. Empty unless max > min in both directions.
 struct TableBounds {

@@ -9,21 +9,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "lookup_table.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {
-
-struct RefineOptions {
-  int max_iterations = 15;
-  double max_shift_m = 0.3;   ///< m; the climb ends where it would leave this distance of its start
-  double max_turn_deg = 5.0;  ///< deg, the same for the angle
-  /// Likelihood of a pose = exp(sharpness * score): how much score counts as evidence. Ours.
-  double sharpness = 30.0;
-  double floor_sigma_m = 0.02;   ///< m; added to the covariance: what no response surface knows
-  double floor_sigma_deg = 0.3;  ///< deg
-  double reach_m = 3.0;          ///< m; how far from the maximum the response surface is looked at
-};
 
 struct RefinedMatch {
   UncertainPose2 T_reference_query;

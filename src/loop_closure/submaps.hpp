@@ -11,23 +11,12 @@
 #include <optional>
 #include <vector>
 
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 
 namespace masked_mapper {
-
-struct SubmapOptions {
-  double half_length_m = 3.0;      ///< travel before and after the node
-  double min_inlier_share = 0.65;  ///< of a scan that fits
-  double max_correction_m = 0.4;   ///< a refinement that moves farther is not one
-  double max_correction_deg = 4.0;
-  double sigma_floor_m = 0.01;  ///< the motion path within a submap is not perfect
-  double sigma_floor_deg = 0.05;
-  double prior_weight = 0.05;  ///< say of the coarse match, beside the points'
-  std::size_t cached = 48;     ///< submaps kept
-  LocalMapOptions map;
-};
 
 /// A match refined; `inlier_share` of the scan's points agree with the submap.
 struct SubmapMatch {

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "lookup_table.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
-#include "masked_mapper/scan_matching/lookup_table.hpp"
 
 namespace masked_mapper {
 

@@ -18,12 +18,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "block_sums.hpp"
+#include "lookup_table.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/scan_matching/block_sums.hpp"
-#include "masked_mapper/scan_matching/lookup_table.hpp"
+#include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {
+
+/// The window of a match: window_sigmas deviations of the guess to either side, within the options'
+/// limits, along the axes of the reference frame.
+SearchGrid SearchGridFor(const UncertainPose2& T_reference_query_guess,
+                         const MatcherOptions& options);
 
 /// One grid pose, in steps from the guess.
 struct GridPose {
@@ -71,10 +77,5 @@ SearchResult SearchExhaustively(const SearchProblem& problem);
 /// a uniform distribution over one grid step is added. A covariance that is not finite gives no
 /// prior.
 Eigen::Matrix3d PriorRoot(const Eigen::Matrix3d& covariance, const SearchGrid& grid);
-
-/// One point per cell of `spacing_m` of the lattice at the origin: the mean of the finite points of
-/// the cell within `max_range_m`, in the order of their first points.
-std::vector<Eigen::Vector2d> ThinPoints(const ScanPoints& points, double spacing_m,
-                                        double max_range_m);
 
 }  // namespace masked_mapper

@@ -7,14 +7,10 @@
 
 #include <vector>
 
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 
 namespace masked_mapper {
-
-struct OpenRevisitOptions {
-  double distance_m = 3.0;  ///< between two nodes at one place
-  double walk_m = 6.0;      ///< along edges, up to which two nodes count as joined already
-};
 
 class OpenRevisits {
  public:
