@@ -37,10 +37,10 @@ void ReadClouds(const SavedMap& map, const SpaceRequest& request, const std::str
   }
 }
 
-void CheckTaken(const SpaceRequest& request, const CloudPoses& poses) {
-  if (poses.taken() > 0) return;
+void CheckTaken(const SpaceRequest& request, const CloudCounts& clouds) {
+  if (clouds.taken > 0) return;
   throw InputError(request.logs.front() + ": none of its clouds is of this map (" +
-                   std::to_string(poses.unknown()) + " have other stamps)");
+                   std::to_string(clouds.unknown) + " have other stamps)");
 }
 
 /// The names of the files in `folder`, and what to say of them.
@@ -75,8 +75,8 @@ Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::
     space.Add(cloud);
     if (rays) rays->Add(cloud);
   });
-  CheckTaken(request, space.poses());
-  const std::string remark = std::to_string(space.poses().taken()) + " clouds";
+  CheckTaken(request, space.clouds());
+  const std::string remark = std::to_string(space.clouds().taken) + " clouds";
   while (rays && rays->Finish()) {
     ReadClouds(map, request, "casting rays of other floors", progress,
                [&](const LevelledCloud& cloud) { rays->Add(cloud); });
@@ -103,8 +103,8 @@ Written WriteOccupancy(const SavedMap& map, const SpaceRequest& request, const f
     ++passes;
     ReadClouds(map, request, passes > 1 ? "casting rays of other floors" : "casting rays", progress,
                [&](const LevelledCloud& cloud) { space.Add(cloud); });
-    if (passes == 1) CheckTaken(request, space.poses());
-    if (passes == 1) clouds = space.poses().taken();
+    if (passes == 1) CheckTaken(request, space.clouds());
+    if (passes == 1) clouds = space.clouds().taken;
   } while (space.Finish());
   progress.Stage("writing");
   const std::string remark = std::to_string(clouds) + " clouds, " +

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/export/space_occupancy.hpp"
+#include "masked_mapper/export/space_export.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 
 namespace masked_mapper {

@@ -12,7 +12,6 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

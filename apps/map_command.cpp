@@ -6,7 +6,7 @@
 #include "commands.hpp"
 #include "map_run.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
-#include "masked_mapper/options/configuration.hpp"
+#include "masked_mapper/options/option_table.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "masked_mapper/joining/drive_joining.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
-#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "saved_map_path.hpp"

@@ -12,7 +12,6 @@
 #include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/map/progress_sink.hpp"
 #include "masked_mapper/map_file/checkpoint_file.hpp"
-#include "masked_mapper/map_file/finished_drives.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 
 namespace masked_mapper {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "masked_mapper/export/map_export.hpp"
-#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "run_description.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "option_flags.hpp"
 
-#include "masked_mapper/options/configuration.hpp"
 #include "masked_mapper/options/option_table.hpp"
 
 namespace masked_mapper {

@@ -12,8 +12,6 @@
 #include "interrupt.hpp"
 #include "masked_mapper/simulation/building.hpp"
 #include "masked_mapper/simulation/simulation.hpp"
-#include "masked_mapper/simulation/simulation_files.hpp"
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "progress_bar.hpp"
 

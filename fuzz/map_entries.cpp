@@ -4,8 +4,8 @@
 #include "fuzz/entries.hpp"
 #include "fuzz/input_file.hpp"
 #include "masked_mapper/editing/edits.hpp"
-#include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/options/configuration.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
+#include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "masked_mapper/geometry/polygon_moments.hpp"
-#include "masked_mapper/geometry/rigid_alignment.hpp"
-#include "masked_mapper/map/frame.hpp"
+#include "masked_mapper/geometry/polygon.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
+#include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/number_text.hpp"
 

@@ -17,7 +17,6 @@
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/yaml_tree.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "error_statistics.hpp"
-#include "masked_mapper/geometry/rigid_alignment.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "masked_mapper/log/floor_file.hpp"
-#include "masked_mapper/text/ends_with.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -18,8 +17,13 @@ constexpr double kFarthestCarriedKey = 5.0;  // s
 
 const std::string kExactEnding = ".truth.tum";
 
+bool IsNamedExact(const std::string& path) {
+  return path.size() >= kExactEnding.size() &&
+         path.compare(path.size() - kExactEnding.size(), std::string::npos, kExactEnding) == 0;
+}
+
 std::string FloorsPath(const std::string& path) {
-  const std::string stem = EndsWith(path, kExactEnding)
+  const std::string stem = IsNamedExact(path)
                                ? path.substr(0, path.size() - kExactEnding.size())
                                : std::filesystem::path(path).replace_extension().string();
   return stem + ".truth_floors.csv";
@@ -47,7 +51,7 @@ bool InsideAGap(const std::vector<StampedPose>& poses, double stamp) {
 Truth ReadTruth(const std::string& path) {
   Truth truth;
   truth.poses = ReadTrajectory(path);
-  truth.exact = EndsWith(path, kExactEnding);
+  truth.exact = IsNamedExact(path);
   const std::string floors = FloorsPath(path);
   std::error_code error;
   if (std::filesystem::exists(floors, error)) truth.floors = ReadFloorFile(floors);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/cloud_poses.hpp"
+#include "cloud_poses.hpp"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ CloudPoses::CloudPoses(const BuildingMap& map, const CloudSpacing& spacing,
 const TrajectoryPose* CloudPoses::Take(double log_stamp) {
   const auto known = poses_.find(Microseconds(log_stamp));
   if (known == poses_.end()) {
-    ++unknown_;
+    ++counts_.unknown;
     return nullptr;
   }
   const TrajectoryPose& pose = map_.trajectory[known->second];
@@ -37,7 +37,7 @@ const TrajectoryPose* CloudPoses::Take(double log_stamp) {
     }
   }
   last_ = &pose;
-  ++taken_;
+  ++counts_.taken;
   return &pose;
 }
 

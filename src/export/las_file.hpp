@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "masked_mapper/rendering/voxel_cloud.hpp"
 #include "point_cloud_file.hpp"
+#include "voxel_cloud.hpp"
 
 namespace masked_mapper {
 

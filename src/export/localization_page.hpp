@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "masked_mapper/localization/localizer.hpp"
-#include "masked_mapper/localization/map_changes.hpp"
 #include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {

@@ -15,7 +15,7 @@
 #include "closures_file.hpp"
 #include "floor_label.hpp"
 #include "g2o_file.hpp"
-#include "masked_mapper/rendering/drawn_areas.hpp"
+#include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "masked_mapper/pose_graph/pose_graph.hpp"
-#include "masked_mapper/rendering/voxel_cloud.hpp"
+#include "voxel_cloud.hpp"
 
 namespace masked_mapper {
 

@@ -2,19 +2,39 @@
 #include "masked_mapper/export/space_export.hpp"
 
 #include <algorithm>
+#include <vector>
 
+#include "cloud_poses.hpp"
 #include "las_file.hpp"
 #include "point_cloud_file.hpp"
+#include "voxel_cloud.hpp"
 
 namespace masked_mapper {
 
-SpaceExport::SpaceExport(const BuildingMap& map, const SpaceExportOptions& options)
+class SpaceExport::Impl {
+ public:
+  Impl(const BuildingMap& map, const SpaceExportOptions& options);
+
+  void Add(const LevelledCloud& cloud);
+  CloudCounts clouds() const { return poses_.counts(); }
+  std::size_t voxels() const { return voxels_.size(); }
+  std::size_t Write(SpaceFormat format, const std::filesystem::path& path,
+                    const SpaceOccupancy* seen_through) const;
+
+ private:
+  const BuildingMap& map_;
+  SpaceExportOptions options_;
+  CloudPoses poses_;
+  VoxelCloud voxels_;
+};
+
+SpaceExport::Impl::Impl(const BuildingMap& map, const SpaceExportOptions& options)
     : map_(map),
       options_(options),
       poses_(map, options.spacing, options.floor),
       voxels_(options.voxel_m) {}
 
-void SpaceExport::Add(const LevelledCloud& cloud) {
+void SpaceExport::Impl::Add(const LevelledCloud& cloud) {
   const TrajectoryPose* const pose = poses_.Take(cloud.log_stamp);
   if (pose == nullptr) return;
   const Eigen::Isometry3d T_world_level = poses_.T_world_level(*pose);
@@ -34,8 +54,8 @@ void SpaceExport::Add(const LevelledCloud& cloud) {
   }
 }
 
-std::size_t SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path,
-                               const SpaceOccupancy* seen_through) const {
+std::size_t SpaceExport::Impl::Write(SpaceFormat format, const std::filesystem::path& path,
+                                     const SpaceOccupancy* seen_through) const {
   std::vector<SpacePoint> points = voxels_.Points(options_.least_hits);
   if (seen_through != nullptr) {
     const auto is_free = [seen_through](const SpacePoint& point) {
@@ -56,6 +76,18 @@ std::size_t SpaceExport::Write(SpaceFormat format, const std::filesystem::path& 
       break;
   }
   return points.size();
+}
+
+SpaceExport::SpaceExport(const BuildingMap& map, const SpaceExportOptions& options)
+    : impl_(std::make_unique<Impl>(map, options)) {}
+SpaceExport::~SpaceExport() = default;
+
+void SpaceExport::Add(const LevelledCloud& cloud) { impl_->Add(cloud); }
+CloudCounts SpaceExport::clouds() const { return impl_->clouds(); }
+std::size_t SpaceExport::voxels() const { return impl_->voxels(); }
+std::size_t SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path,
+                               const SpaceOccupancy* seen_through) const {
+  return impl_->Write(format, path, seen_through);
 }
 
 }  // namespace masked_mapper

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/space_occupancy.hpp"
+#include "masked_mapper/export/space_export.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "cloud_poses.hpp"
+#include "masked_mapper/rendering/space_states.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "occupancy_grid_file.hpp"
@@ -19,12 +23,43 @@ constexpr double kFarthestVoxel = 1 << 19;  // from the origin
 
 }  // namespace
 
-SpaceOccupancy::SpaceOccupancy(const BuildingMap& map, const SpaceOccupancyOptions& options)
+class SpaceOccupancy::Impl {
+ public:
+  Impl(const BuildingMap& map, const SpaceOccupancyOptions& options);
+
+  void Add(const LevelledCloud& cloud);
+  bool Finish();
+  Cell At(FloorId floor, const Eigen::Vector3d& place_in_world) const;
+  CloudCounts clouds() const { return poses_->counts(); }
+  double peak_mib() const { return peak_mib_; }
+  void WriteOctree(const std::filesystem::path& path) const;
+  void WriteGrid(FloorId floor, const RobotHeights& heights,
+                 const std::filesystem::path& stem) const;
+
+ private:
+  struct FloorVotes {
+    std::optional<SpaceVotes> votes;
+    SpaceStates states;  ///< once all is seen
+    bool is_done = false;
+    bool waits = false;  ///< for the next pass of the log
+  };
+
+  double VotesMib() const;
+  void KeepWithinMemory();
+
+  const BuildingMap& map_;
+  SpaceOccupancyOptions options_;
+  std::optional<CloudPoses> poses_;
+  std::vector<FloorVotes> floors_;  ///< by id
+  double peak_mib_ = 0.0;
+};
+
+SpaceOccupancy::Impl::Impl(const BuildingMap& map, const SpaceOccupancyOptions& options)
     : map_(map), options_(options), floors_(map.graph.floors().size()) {
   poses_.emplace(map, options.spacing, options.floor);
 }
 
-double SpaceOccupancy::VotesMib() const {
+double SpaceOccupancy::Impl::VotesMib() const {
   std::size_t bytes = 0;
   for (const FloorVotes& floor : floors_) {
     if (floor.votes) bytes += floor.votes->bytes();
@@ -33,7 +68,7 @@ double SpaceOccupancy::VotesMib() const {
   return static_cast<double>(bytes) / kMib;
 }
 
-void SpaceOccupancy::KeepWithinMemory() {
+void SpaceOccupancy::Impl::KeepWithinMemory() {
   for (double mib = VotesMib();; mib = VotesMib()) {
     peak_mib_ = std::max(peak_mib_, mib);
     if (mib <= options_.memory_mib) return;
@@ -51,7 +86,7 @@ void SpaceOccupancy::KeepWithinMemory() {
   }
 }
 
-void SpaceOccupancy::Add(const LevelledCloud& cloud) {
+void SpaceOccupancy::Impl::Add(const LevelledCloud& cloud) {
   const TrajectoryPose* const pose = poses_->Take(cloud.log_stamp);
   if (pose == nullptr) return;
   FloorVotes& floor = floors_[static_cast<std::size_t>(pose->floor)];
@@ -72,7 +107,7 @@ void SpaceOccupancy::Add(const LevelledCloud& cloud) {
   KeepWithinMemory();
 }
 
-bool SpaceOccupancy::Finish() {
+bool SpaceOccupancy::Impl::Finish() {
   bool is_more = false;
   for (FloorVotes& floor : floors_) {
     if (floor.votes) {
@@ -87,7 +122,7 @@ bool SpaceOccupancy::Finish() {
   return is_more;
 }
 
-Cell SpaceOccupancy::At(FloorId floor, const Eigen::Vector3d& place_in_world) const {
+Cell SpaceOccupancy::Impl::At(FloorId floor, const Eigen::Vector3d& place_in_world) const {
   VoxelIndex voxel{};
   for (int axis = 0; axis < 3; ++axis) {
     const double index = std::floor(place_in_world(axis) / options_.votes.resolution_m);
@@ -97,18 +132,37 @@ Cell SpaceOccupancy::At(FloorId floor, const Eigen::Vector3d& place_in_world) co
   return floors_[static_cast<std::size_t>(floor)].states.At(voxel);
 }
 
-void SpaceOccupancy::WriteOctree(const std::filesystem::path& path) const {
+void SpaceOccupancy::Impl::WriteOctree(const std::filesystem::path& path) const {
   std::vector<const SpaceStates*> states;
   for (const FloorVotes& floor : floors_) states.push_back(&floor.states);
   WriteOctomap(BuildSpaceOctree(states, options_.heights), path);
 }
 
-void SpaceOccupancy::WriteGrid(FloorId floor, const RobotHeights& heights,
-                               const std::filesystem::path& stem) const {
+void SpaceOccupancy::Impl::WriteGrid(FloorId floor, const RobotHeights& heights,
+                                     const std::filesystem::path& stem) const {
   const auto f = static_cast<std::size_t>(floor);
   const double elevation = map_.graph.floors()[f].elevation;
   WriteOccupancyGrid(
       GridBetween(floors_[f].states, elevation + heights.low_m, elevation + heights.high_m), stem);
+}
+
+SpaceOccupancy::SpaceOccupancy(const BuildingMap& map, const SpaceOccupancyOptions& options)
+    : impl_(std::make_unique<Impl>(map, options)) {}
+SpaceOccupancy::~SpaceOccupancy() = default;
+
+void SpaceOccupancy::Add(const LevelledCloud& cloud) { impl_->Add(cloud); }
+bool SpaceOccupancy::Finish() { return impl_->Finish(); }
+Cell SpaceOccupancy::At(FloorId floor, const Eigen::Vector3d& place_in_world) const {
+  return impl_->At(floor, place_in_world);
+}
+CloudCounts SpaceOccupancy::clouds() const { return impl_->clouds(); }
+double SpaceOccupancy::peak_mib() const { return impl_->peak_mib(); }
+void SpaceOccupancy::WriteOctree(const std::filesystem::path& path) const {
+  impl_->WriteOctree(path);
+}
+void SpaceOccupancy::WriteGrid(FloorId floor, const RobotHeights& heights,
+                               const std::filesystem::path& stem) const {
+  impl_->WriteGrid(floor, heights, stem);
 }
 
 }  // namespace masked_mapper

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "floor_label.hpp"
-#include "masked_mapper/map/frame.hpp"
+#include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"

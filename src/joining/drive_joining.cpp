@@ -12,8 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
-#include "masked_mapper/joining/piece_search.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
@@ -22,6 +21,7 @@
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "piece_search.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "piece_search.hpp"
+
 namespace masked_mapper {
 namespace {
 

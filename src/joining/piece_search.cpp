@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/piece_search.hpp"
+#include "piece_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "masked_mapper/geometry/rigid_alignment.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/scan_matching/for_each.hpp"
 #include "place_fits.hpp"
 

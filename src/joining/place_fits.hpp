@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/joining/piece_search.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/rendering/searchable_floor.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
+#include "piece_search.hpp"
 
 namespace masked_mapper {
 

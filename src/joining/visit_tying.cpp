@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/visit_tying.hpp"
+#include "masked_mapper/joining/floor_joining.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
+#include "piece_search.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -13,7 +13,7 @@
 #include "held_place.hpp"
 #include "hypotheses.hpp"
 #include "known_map.hpp"
-#include "masked_mapper/localization/map_changes.hpp"
+#include "map_changes.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "ride_watch.hpp"
 #include "stretch.hpp"

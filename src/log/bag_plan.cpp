@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "range_limit.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/sensor/virtual_scan.hpp"
+#include "virtual_scan.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds of one 3D lidar in, virtual 2D scans out: each cloud is straightened along the motion that
-// the wheels tell, levelled and cut (sensor/virtual_scan.hpp).
+// the wheels tell, levelled and cut (virtual_scan.hpp).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "ground.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/sensor/ground.hpp"
 #include "ros_point_cloud.hpp"
 
 namespace masked_mapper {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
-#include "masked_mapper/text/ends_with.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "regular_file.hpp"
 #include "unpacking.hpp"
@@ -22,7 +22,8 @@ class TextSource::Impl {
   explicit Impl(const std::string& path) : file_(path, path), input_(kFileBlock) {
     Refill();
     packing_ = PackingHere();
-    if (packing_ != Packing::kGzip && file_.size() > 0 && EndsWith(path, ".gz")) {
+    if (packing_ != Packing::kGzip && file_.size() > 0 &&
+        std::filesystem::path(path).extension() == ".gz") {
       throw InputError(path + ": named .gz, but not gzip");
     }
     unpacker_ = MakeUnpacker(packing_);

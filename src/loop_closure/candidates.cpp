@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 
 namespace masked_mapper {
 

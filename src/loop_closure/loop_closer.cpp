@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/closure_matcher.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/optimization/closure_audit.hpp"

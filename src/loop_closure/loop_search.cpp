@@ -6,7 +6,7 @@
 #include <queue>
 #include <tuple>
 
-#include "masked_mapper/pose_graph/composed_trace.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {

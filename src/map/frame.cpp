@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map/frame.hpp"
+#include "masked_mapper/map/trajectory.hpp"
 
 namespace masked_mapper {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map_file/finished_drives.hpp"
+#include "masked_mapper/map_file/checkpoint_file.hpp"
 
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "log_identity.hpp"
-#include "masked_mapper/map_file/map_file_reader.hpp"
-#include "masked_mapper/map_file/map_file_writer.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "unfinished_folder.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "map_rows.hpp"
-#include "masked_mapper/geometry/covariance.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "packed_bytes.hpp"
 
 namespace masked_mapper {

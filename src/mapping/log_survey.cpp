@@ -10,7 +10,6 @@
 #include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
-#include "masked_mapper/motion/mount_check.hpp"
 #include "masked_mapper/motion/standstill_check.hpp"
 #include "masked_mapper/motion/sweep_check.hpp"
 #include "masked_mapper/motion/sweep_straightener.hpp"

@@ -11,11 +11,9 @@
 
 #include "masked_mapper.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
-#include "masked_mapper/joining/visit_tying.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
-#include "masked_mapper/mapping/straightened_log.hpp"
 #include "masked_mapper/sensor/state_archive.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/mapping/straightened_log.hpp"
+#include "masked_mapper/mapping/log_survey.hpp"
 
 #include <optional>
 #include <utility>

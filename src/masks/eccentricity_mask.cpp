@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/geometry/mahalanobis.hpp"
-#include "masked_mapper/geometry/polygon_moments.hpp"
+#include "masked_mapper/geometry/polygon.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 
 namespace masked_mapper {
 

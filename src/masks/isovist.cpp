@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/sensor/beam_sweep.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 

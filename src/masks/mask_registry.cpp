@@ -10,7 +10,6 @@
 
 #include "combined_masks.hpp"
 #include "eccentricity_mask.hpp"
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "never_always_masks.hpp"
 #include "openings_mask.hpp"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "masked_mapper/sensor/beam_sweep.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "door_evidence.hpp"
-#include "masked_mapper/sensor/beam_sweep.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "dead_reckoning.hpp"
 #include "gyro_bias.hpp"
-#include "masked_mapper/sensor/straightened_scan.hpp"
 #include "scan_odometry.hpp"
+#include "straightened_scan.hpp"
 #include "wheel_noise.hpp"
 
 namespace masked_mapper {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "masked_mapper/sensor/straightened_scan.hpp"
+#include "straightened_scan.hpp"
 
 namespace masked_mapper {
 namespace {

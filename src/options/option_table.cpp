@@ -10,7 +10,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/routing/free_space.hpp"
+#include "free_space.hpp"
 
 namespace masked_mapper {
 

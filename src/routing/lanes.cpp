@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "floor_paths.hpp"
-#include "masked_mapper/map/drives.hpp"
+#include "free_space.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -181,33 +181,6 @@ class FloorLanes {
 };
 
 }  // namespace
-
-std::vector<FreeSpace::Points> DrivenOn(const BuildingMap& map, FloorId floor) {
-  std::vector<FreeSpace::Points> ways;
-  for (std::size_t drive = 0; drive < map.drives.size(); ++drive) {
-    const IndexRange range = PosesOfDrive(map, drive);
-    bool goes_on = false;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      const TrajectoryPose& pose = map.trajectory[i];
-      const bool is_here = !pose.in_transit && pose.floor == floor;
-      if (is_here && !goes_on) ways.emplace_back();
-      if (is_here) ways.back().push_back(pose.T_world_robot.Translation());
-      goes_on = is_here;
-    }
-  }
-  return ways;
-}
-
-FreeSpace FreeSpaceOf(const BuildingMap& map, const OccupancyGrid& grid, FloorId floor,
-                      const ClearanceOptions& clearance) {
-  std::vector<FreeSpace::Points> kept_out;
-  for (const Area& area : map.areas) {
-    if (area.kind == AreaKind::kKeepOut && area.floor == floor) {
-      kept_out.push_back(area.corners_in_world);
-    }
-  }
-  return FreeSpace(grid, DrivenOn(map, floor), kept_out, clearance);
-}
 
 LaneGraph LanesOf(const BuildingMap& map, const std::vector<OccupancyGrid>& grids,
                   const ClearanceOptions& clearance) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "floor_paths.hpp"
+#include "free_space.hpp"
 #include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {

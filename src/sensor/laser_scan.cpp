@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "masked_mapper/sensor/beam_sweep.hpp"
-
 namespace masked_mapper {
 namespace {
 

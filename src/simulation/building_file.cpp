@@ -10,7 +10,6 @@
 
 #include "building_plans.hpp"
 #include "building_reader.hpp"
-#include "masked_mapper/text/did_you_mean.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

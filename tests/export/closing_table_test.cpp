@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/closing_table.hpp"
+#include "masked_mapper/export/summary_file.hpp"
 
 #include <gtest/gtest.h>
 

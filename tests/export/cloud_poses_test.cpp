@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/cloud_poses.hpp"
+#include "export/cloud_poses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,8 +42,8 @@ TEST(CloudPosesTest, TakesWhatWasSeenFromElsewhere) {
   EXPECT_EQ(poses.Take(1.45), nullptr);
   const TrajectoryPose* const above = poses.Take(1.5);
   ASSERT_NE(above, nullptr);
-  EXPECT_EQ(poses.taken(), 4U);
-  EXPECT_EQ(poses.unknown(), 1U);
+  EXPECT_EQ(poses.counts().taken, 4U);
+  EXPECT_EQ(poses.counts().unknown, 1U);
   const Eigen::Vector3d p = poses.T_world_level(*above) * Eigen::Vector3d(0.0, 0.0, 1.0);
   EXPECT_NEAR(p.x(), 0.3, 1e-12);
   EXPECT_NEAR(p.z(), 4.5, 1e-12);

@@ -66,9 +66,9 @@ TEST(SpaceExportTest, CloudsStandAtTheirPosesAndElevations) {
   const BuildingMap map = Map();
   SpaceExport space(map, {});
   for (const double stamp : {10.0, 10.5, 11.0, 12.0}) space.Add(CloudAt(stamp));
-  EXPECT_EQ(space.poses().taken(), 2U);    // not the one between floors
-  EXPECT_EQ(space.poses().unknown(), 1U);  // of a stamp that the map has not
-  EXPECT_EQ(space.voxels(), 2U);           // what is too far is left out
+  EXPECT_EQ(space.clouds().taken, 2U);    // not the one between floors
+  EXPECT_EQ(space.clouds().unknown, 1U);  // of a stamp that the map has not
+  EXPECT_EQ(space.voxels(), 2U);          // what is too far is left out
   const std::string ply = Ply(space);
   EXPECT_NE(ply.find("element vertex 2\n"), std::string::npos);
   const std::size_t begin = ply.find("end_header\n") + 11;
@@ -144,7 +144,7 @@ TEST(SpaceExportTest, TakesNoCloudWhereTheRobotStands) {
   }
   SpaceExport space(map, {});
   for (const TrajectoryPose& pose : map.trajectory) space.Add(CloudAt(pose.log_stamp));
-  EXPECT_EQ(space.poses().taken(), 2U);
+  EXPECT_EQ(space.clouds().taken, 2U);
 }
 
 TEST(SpaceExportTest, OtherFloorsAndHeightsAreLeftOut) {
@@ -153,7 +153,7 @@ TEST(SpaceExportTest, OtherFloorsAndHeightsAreLeftOut) {
   options.floor = 0;
   SpaceExport ground(map, options);
   ground.Add(CloudAt(10.0));
-  EXPECT_EQ(ground.poses().taken(), 0U);
+  EXPECT_EQ(ground.clouds().taken, 0U);
   options.floor.reset();
   options.heights.high_m = 4.0;
   SpaceExport low(map, options);

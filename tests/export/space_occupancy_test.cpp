@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/space_occupancy.hpp"
+#include "masked_mapper/export/space_export.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/geometry/covariance.hpp"
 
 #include <gtest/gtest.h>
 

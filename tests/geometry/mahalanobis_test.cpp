@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/geometry/mahalanobis.hpp"
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 
 #include <gtest/gtest.h>
 

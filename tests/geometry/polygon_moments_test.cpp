@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/geometry/polygon_moments.hpp"
+#include "masked_mapper/geometry/polygon.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 
 #include "house/source_tree.hpp"
 
@@ -62,18 +61,6 @@ TEST(Files, TreesMirrorEachOther) {
     const fs::path test =
         fs::path("tests") / below.parent_path() / (below.stem().string() + "_test.cpp");
     EXPECT_TRUE(fs::exists(Root() / test)) << source << " has no " << test;
-  }
-}
-
-/// A header that is implemented is so by the source of its name, at least.
-TEST(Files, HeadersAreImplementedUnderTheirNames) {
-  std::map<fs::path, std::set<fs::path>> implemented_by;
-  for (const fs::path& source : FilesUnder("src", {".cpp"})) {
-    if (fs::exists((Root() / source).replace_extension(".hpp"))) continue;
-    implemented_by[HeaderOf(source)].insert(source.stem());
-  }
-  for (const auto& [header, stems] : implemented_by) {
-    EXPECT_TRUE(stems.count(header.stem())) << header << " has no source of its name";
   }
 }
 

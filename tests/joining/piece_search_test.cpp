@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/piece_search.hpp"
+#include "joining/piece_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/visit_tying.hpp"
+#include "masked_mapper/joining/floor_joining.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/localization/map_changes.hpp"
+#include "localization/map_changes.hpp"
 
 #include <gtest/gtest.h>
 

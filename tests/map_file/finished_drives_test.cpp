@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map_file/finished_drives.hpp"
 
 #include <gtest/gtest.h>
 

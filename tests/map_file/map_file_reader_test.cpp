@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map_file/map_file_reader.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include "map_file/database.hpp"
 #include "map_file/schema.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/map_file/map_file_writer.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/map_file/map_file_writer.hpp"
+#include "masked_mapper/map_file/saved_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "masked_mapper/geometry/polygon_moments.hpp"
+#include "masked_mapper/geometry/polygon.hpp"
 #include "masks/hand_drawn.hpp"
 
 namespace masked_mapper {

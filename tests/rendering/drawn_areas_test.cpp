@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/rendering/drawn_areas.hpp"
+#include "masked_mapper/rendering/occupancy_grid.hpp"
 
 #include <gtest/gtest.h>
 

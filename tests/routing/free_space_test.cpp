@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/routing/free_space.hpp"
+#include "routing/free_space.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "routing/free_space.hpp"
 #include "routing/two_floors.hpp"
 
 namespace masked_mapper {

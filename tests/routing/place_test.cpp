@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/routing/place.hpp"
+#include "masked_mapper/routing/route.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/beam_sweep.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 #include <gtest/gtest.h>
 

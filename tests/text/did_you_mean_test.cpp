@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/text/did_you_mean.hpp"
+#include "masked_mapper/text/input_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/map/building_map.hpp"
-#include "masked_mapper/routing/free_space.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {
 

@@ -82,4 +82,8 @@ std::string SummaryText(const Summary& summary);
 /// SummaryText as a file. Throws std::runtime_error when it cannot be written.
 void WriteSummary(const Summary& summary, const std::filesystem::path& path);
 
+/// The summary as lines for people: nodes, closures and why others were rejected, floors, seconds
+/// per stage and memory.
+std::string ClosingTable(const Summary& summary);
+
 }  // namespace masked_mapper

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace masked_mapper {
@@ -17,5 +18,17 @@ bool IsInsidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::V
 void ForEachCellInside(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& origin,
                        double resolution_m, int width, int height,
                        const std::function<void(std::size_t)>& visit);
+
+/// Exact area moments of a polygon (Section III-D, Eq. 8): of a uniform density over it, by
+/// triangulation from the origin.
+struct PolygonMoments {
+  double area = 0.0;                                     ///< m^2, positive
+  Eigen::Vector2d centroid = Eigen::Vector2d::Zero();    ///< m
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< m^2, about the centroid
+};
+
+/// Moments of the closed polygon through `corners` (either orientation, last joined to first).
+/// Empty with fewer than three corners or when the area vanishes.
+std::optional<PolygonMoments> ComputePolygonMoments(const std::vector<Eigen::Vector2d>& corners);
 
 }  // namespace masked_mapper

@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "masked_mapper/geometry/angle.hpp"
 
@@ -60,5 +62,9 @@ inline Pose2 Interpolate(const Pose2& T_w_a, const Pose2& T_w_b, double fraction
 inline double Distance(const Pose2& T_w_a, const Pose2& T_w_b) {
   return std::hypot(T_w_b.x - T_w_a.x, T_w_b.y - T_w_a.y);
 }
+
+/// T_a_b of least squared distances between pairs of points in a and in b; the identity for none,
+/// and a shift alone where they do not spread.
+Pose2 AlignRigidly(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& a_and_b);
 
 }  // namespace masked_mapper

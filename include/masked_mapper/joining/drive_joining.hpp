@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "masked_mapper/joining/piece_search.hpp"
+#include "masked_mapper/joining/joining_options.hpp"
 #include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/progress_sink.hpp"

@@ -8,23 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/joining/piece_search.hpp"
+#include "masked_mapper/joining/joining_options.hpp"
+#include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/floor_transit.hpp"
 #include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {
-
-/// When two visits of floors that no sensor tells apart are one floor.
-struct FloorJoinOptions {
-  DriveJoinOptions places = PlacesOfOneDrive();
-  PiecePrior ride;  ///< how far a ride may throw the robot's pose off
-
-  /// Of places where motion has put the level already, fewer and nearer ones suffice, but most of
-  /// them have to fit: a floor is seen whole, where drives share a part of their ways.
-  static DriveJoinOptions PlacesOfOneDrive();
-};
 
 struct FloorJoining {
   FloorTimeline floors;  ///< as far as it ever will be known; levels left open say why
@@ -42,5 +33,13 @@ bool HasUnknownFloors(const FloorTimeline& floors);
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
                         const FloorJoinOptions& options, const StoreyOptions& storeys,
                         const MatcherOptions& matcher);
+
+/// Visits of one floor in one drive. A mask keeps few scans, and a scanner looks ahead: where the
+/// robot comes back to a floor by another way round, hardly two of them see the same. So what was
+/// not tied to an older visit is matched once more, against all that was seen around the older
+/// nodes. A visit that even this ties nowhere is looked for on the floor as the older ones saw it.
+/// Closures enter by the validator's votes, as all do. The map is solved and its path bent anew if
+/// there are any. `map` is that of one drive, finished, with `drives` set.
+void TieVisits(LoopClosureOptions options, const FloorJoinOptions& joins, BuildingMap& map);
 
 }  // namespace masked_mapper

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/localization/map_changes.hpp"
 #include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
@@ -59,6 +58,18 @@ struct Localization {
   int matches = 0;             ///< scans held against a node of the map
   int searches = 0;            ///< on whole floors
   std::vector<UnsureSpan> unsure_spans;
+};
+
+enum class ChangeKind { kNew, kGone };
+constexpr const char* Name(ChangeKind kind) { return kind == ChangeKind::kNew ? "new" : "gone"; }
+
+/// What is no longer as the map has it: a region of a floor, in world.
+struct MapChange {
+  ChangeKind kind = ChangeKind::kNew;
+  FloorId floor = 0;
+  double x = 0.0;  ///< m, its middle
+  double y = 0.0;
+  double size_m = 0.0;  ///< its longest side
 };
 
 class Localizer {

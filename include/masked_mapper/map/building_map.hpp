@@ -2,12 +2,13 @@
 // What mapping a log leaves behind; every export is written from this.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
-#include "masked_mapper/map/annotations.hpp"
 #include "masked_mapper/map/closure.hpp"
 #include "masked_mapper/pose_graph/pose_graph.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
@@ -15,6 +16,25 @@
 #include "masked_mapper/sensor/sensor_finding.hpp"
 
 namespace masked_mapper {
+
+/// What people wrote into a map: places with a name, and areas.
+struct NamedPlace {
+  std::string name;  ///< unique in its map; letters, digits, `_`, `.` and `-`
+  FloorId floor = 0;
+  Eigen::Vector2d at_in_world = Eigen::Vector2d::Zero();
+};
+
+enum class AreaKind {
+  kKeepOut,  ///< nothing in it counts as free
+  kErased,   ///< no wall in it counts
+};
+constexpr std::array<const char*, 2> NamesOf(AreaKind /*any*/) { return {"keep_out", "erase"}; }
+
+struct Area {
+  AreaKind kind = AreaKind::kKeepOut;
+  FloorId floor = 0;
+  std::vector<Eigen::Vector2d> corners_in_world;  ///< three or more
+};
 
 /// The pose of one scan of the log.
 struct TrajectoryPose {

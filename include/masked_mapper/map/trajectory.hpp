@@ -13,4 +13,8 @@ namespace masked_mapper {
 /// node the pose is the node's; after the last node the motion path goes on from it.
 void BendTrajectory(const PoseGraph& graph, std::vector<TrajectoryPose>& trajectory);
 
+/// Everything that has a place in the plane: nodes, trajectory, the motion path, named places and
+/// areas. What was measured stays, and so does what the map says.
+void MoveMap(const Pose2& T_new_world, BuildingMap& map);
+
 }  // namespace masked_mapper

@@ -2,6 +2,7 @@
 // A map as it is kept: what was asked for, and what came of it.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,5 +57,16 @@ std::string FirstDifference(const NamedValues& before, const NamedValues& now);
 
 /// The same of how another run differs from the one that made a map or a checkpoint.
 std::string DifferenceFrom(const MapOrigin& before, const MapOrigin& now);
+
+/// Reads it back, whole or not at all: the map as it was written, but for its seconds. Throws
+/// InputError when there is no such file, when it is no saved map, was written by a newer program,
+/// or is damaged in any way.
+SavedMap ReadMapFile(const std::filesystem::path& path);
+
+/// Writes building.mmap, one SQLite file from which every export can be written again (its tables:
+/// docs/map_file.md). It must not exist. The same map gives the same bytes. Throws
+/// std::runtime_error when it cannot be written.
+void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
+                  const std::filesystem::path& path);
 
 }  // namespace masked_mapper

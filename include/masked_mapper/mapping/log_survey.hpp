@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_options.hpp"
+#include "masked_mapper/motion/sweep_straightener.hpp"
 
 namespace masked_mapper {
 
@@ -40,5 +42,8 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options);
 /// log has none; `path` is for the message.
 MotionSource SettleMotionSource(const std::string& path, const MotionOptions& options,
                                 const LogSurvey& survey);
+
+/// A pass from the beginning. Without wheels scans come as they are, with the time of their beams.
+std::unique_ptr<LogReader> ReadStraightened(const LogSource& source, const SweepTiming& timing);
 
 }  // namespace masked_mapper

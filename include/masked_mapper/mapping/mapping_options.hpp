@@ -2,7 +2,7 @@
 // What mapping one log takes, by composition of the rooms' own options.
 #pragma once
 
-#include "masked_mapper/joining/floor_joining.hpp"
+#include "masked_mapper/joining/joining_options.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/masks/mask_options.hpp"

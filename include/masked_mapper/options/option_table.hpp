@@ -55,4 +55,17 @@ using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 /// Key and value of every option that may change the result: not the number of threads.
 std::vector<std::pair<std::string, OptionValue>> OptionValues(const Options& options);
 
+// Configuration files: YAML whose keys are those of the option table, nested (`matcher:` /
+// `min_score:`) or dotted (`matcher.min_score:`). None is ever required.
+
+/// Changes the options that the file names. Throws InputError with file, line and key for what
+/// cannot be read, does not parse, is unknown, given twice, of the wrong type or out of range.
+void ReadConfiguration(const std::string& path, Options& options);
+
+/// The same from text; `name` stands for the file in messages.
+void ReadConfigurationText(const std::string& name, const std::string& text, Options& options);
+
+/// A configuration file with every option at its value in `options`, and its meaning beside it.
+std::string ConfigurationText(const Options& options);
+
 }  // namespace masked_mapper

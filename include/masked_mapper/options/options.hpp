@@ -2,7 +2,7 @@
 // Every option of a run, by composition of the rooms' own structs.
 #pragma once
 
-#include "masked_mapper/joining/piece_search.hpp"
+#include "masked_mapper/joining/joining_options.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/octree.hpp"

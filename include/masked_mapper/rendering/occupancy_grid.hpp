@@ -4,14 +4,24 @@
 // outvote far ones, whose ends are less certain; that keeps walls thin.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "masked_mapper/rendering/posed_scan.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 
 enum class Cell : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
+
+/// A scan at its final place, as rendering wants it.
+struct PosedScan {
+  Pose2 T_world_robot;
+  std::int32_t floor = 0;
+  const LaserScan* scan = nullptr;  ///< outlives the rendering
+  std::size_t drive = 0;            ///< later ones are newer
+};
 
 struct GridOptions {
   double resolution_m = 0.05;
@@ -57,5 +67,13 @@ OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor
 
 /// Area known to be free or occupied, m^2.
 double KnownArea(const OccupancyGrid& grid);
+
+// What people know better than the scans, drawn into a grid. Corners in world, metres.
+
+/// Walls inside become free, and their wall points go.
+void EraseWalls(const std::vector<Eigen::Vector2d>& corners, OccupancyGrid& grid);
+
+/// What was free inside becomes unknown; walls stay, since a robot may localise by them.
+void ForgetFree(const std::vector<Eigen::Vector2d>& corners, OccupancyGrid& grid);
 
 }  // namespace masked_mapper

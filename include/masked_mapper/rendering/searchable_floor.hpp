@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/rendering/posed_scan.hpp"
 #include "masked_mapper/scan_matching/floor_search.hpp"
 
 namespace masked_mapper {

@@ -12,9 +12,16 @@
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/routing/crossings.hpp"
-#include "masked_mapper/routing/free_space.hpp"
 
 namespace masked_mapper {
+
+/// For whom there has to be room.
+struct ClearanceOptions {
+  double radius_m = 0.3;  ///< of the robot that is to go
+  /// Of the robot that mapped. Where it drove, one no larger passes, whatever the grid says: what
+  /// stood there at another time was a door or somebody.
+  double driven_radius_m = 0.3;
+};
 
 struct LaneVertex {
   FloorId floor = 0;
@@ -38,12 +45,5 @@ struct LaneGraph {
 /// `grids` by FloorId. A place to which no way leads is a vertex without lanes.
 LaneGraph LanesOf(const BuildingMap& map, const std::vector<OccupancyGrid>& grids,
                   const ClearanceOptions& clearance);
-
-/// Where the robot may be on a floor, with what was driven and what is kept out.
-FreeSpace FreeSpaceOf(const BuildingMap& map, const OccupancyGrid& grid, FloorId floor,
-                      const ClearanceOptions& clearance);
-
-/// What was driven on a floor, visit by visit, in world.
-std::vector<FreeSpace::Points> DrivenOn(const BuildingMap& map, FloorId floor);
 
 }  // namespace masked_mapper

@@ -11,10 +11,18 @@
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/routing/crossings.hpp"
-#include "masked_mapper/routing/free_space.hpp"
-#include "masked_mapper/routing/place.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {
+
+struct Place {
+  FloorId floor = 0;
+  Eigen::Vector2d at_in_world = Eigen::Vector2d::Zero();
+};
+
+/// `floor,x,y` (label, metres in world), `t=STAMP` (s, of the map's trajectory: where the robot was
+/// then, within half a second), or the name of a place. Throws InputError, one line.
+Place PlaceOf(const std::string& text, const BuildingMap& map);
 
 struct RouteOptions {
   ClearanceOptions clearance;

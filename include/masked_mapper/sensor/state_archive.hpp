@@ -22,7 +22,6 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/geometry/covariance.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 

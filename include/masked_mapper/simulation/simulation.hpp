@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated drive: what is asked of it, what spoils it, and what came of it. The perfect world
-// (options) and what spoils it (noise) are apart.
+// A simulated drive: what is asked of it, what spoils it, and what came of it as files: the log,
+// and beside it what was true. The perfect world (options) and what spoils it (noise) are apart.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_writer.hpp"
+#include "masked_mapper/simulation/building.hpp"
 
 namespace masked_mapper {
 
@@ -157,5 +159,20 @@ struct SimulationSummary {
   Pose2 T_building_world;   ///< where the drive began, in the building's plan
   std::string start_floor;  ///< label
 };
+
+/// For `dir/campus.log.gz`: `dir/campus.log.truth.tum` and `dir/campus.log.truth_floors.csv`.
+struct SimulationPaths {
+  std::string log;
+  std::string truth;         ///< `t x y z qx qy qz qw` of T_world_robot, one line per scan
+  std::string truth_floors;  ///< header `t,label`, one line per scan, `-` in transit
+};
+SimulationPaths PathsOf(const std::string& log_path);
+
+/// Simulates and writes the three files; what stood there is replaced once all are complete.
+/// Throws InputError as Simulate does, and std::runtime_error when a file cannot be written (no
+/// file is left half-written then).
+SimulationSummary SimulateToFiles(const Building& building, const SimulationOptions& options,
+                                  const SimulationNoise& noise, const std::string& log_path,
+                                  const std::function<void(double)>& progress);
 
 }  // namespace masked_mapper

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace masked_mapper {
 
@@ -12,5 +14,12 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Letters to insert, delete, replace or swap with their neighbour to turn one name into the other.
+std::size_t EditDistance(std::string_view a, std::string_view b);
+
+/// " (did you mean `nearest`?)" for the known name nearest to the unknown one (ties: the first), or
+/// nothing when none is near: more than a third of its letters differ.
+std::string DidYouMean(std::string_view unknown, const std::vector<std::string>& known);
 
 }  // namespace masked_mapper

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/straightened_scan.hpp"
+#include "motion/straightened_scan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/simulation/simulation_files.hpp"
+#include "masked_mapper/simulation/simulation.hpp"
 
 #include <array>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/ground.hpp"
+#include "ground.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

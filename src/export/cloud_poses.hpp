@@ -7,15 +7,10 @@
 #include <optional>
 #include <unordered_map>
 
+#include "masked_mapper/export/space_export.hpp"
 #include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
-
-/// Of clouds taken while the robot hardly moves one is enough.
-struct CloudSpacing {
-  double distance_m = 0.15;  ///< travel from one cloud that is taken to the next
-  double angle_deg = 10.0;   ///< or turn, whichever comes first
-};
 
 class CloudPoses {
  public:
@@ -28,8 +23,7 @@ class CloudPoses {
   /// World from the level frame of a cloud; z from the elevation of the pose's floor.
   Eigen::Isometry3d T_world_level(const TrajectoryPose& pose) const;
 
-  std::size_t taken() const { return taken_; }
-  std::size_t unknown() const { return unknown_; }  ///< of stamps that the map does not have
+  const CloudCounts& counts() const { return counts_; }
 
  private:
   const BuildingMap& map_;
@@ -37,8 +31,7 @@ class CloudPoses {
   std::optional<FloorId> floor_;
   std::unordered_map<std::int64_t, std::size_t> poses_;  ///< in the trajectory, by microseconds
   const TrajectoryPose* last_ = nullptr;
-  std::size_t taken_ = 0;
-  std::size_t unknown_ = 0;
+  CloudCounts counts_;
 };
 
 }  // namespace masked_mapper

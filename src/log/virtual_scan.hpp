@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "masked_mapper/sensor/ground.hpp"
+#include "ground.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/sensor/lidar_cloud.hpp"
 

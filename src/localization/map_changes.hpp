@@ -9,22 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "masked_mapper/localization/localizer.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/searchable_floor.hpp"
 
 namespace masked_mapper {
-
-enum class ChangeKind { kNew, kGone };
-constexpr const char* Name(ChangeKind kind) { return kind == ChangeKind::kNew ? "new" : "gone"; }
-
-/// A region of a floor, in world.
-struct MapChange {
-  ChangeKind kind = ChangeKind::kNew;
-  FloorId floor = 0;
-  double x = 0.0;  ///< m, its middle
-  double y = 0.0;
-  double size_m = 0.0;  ///< its longest side
-};
 
 class ChangeFinder {
  public:

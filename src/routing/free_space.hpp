@@ -8,16 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {
-
-struct ClearanceOptions {
-  double radius_m = 0.3;  ///< of the robot that is to go
-  /// Of the robot that mapped. Where it drove, one no larger passes, whatever the grid says: what
-  /// stood there at another time was a door or somebody.
-  double driven_radius_m = 0.3;
-};
 
 struct GridCell {
   int column = 0;
@@ -72,5 +67,12 @@ class FreeSpace {
   /// passable itself.
   std::vector<float> room_;
 };
+
+/// Where the robot may be on a floor, with what was driven and what is kept out.
+FreeSpace FreeSpaceOf(const BuildingMap& map, const OccupancyGrid& grid, FloorId floor,
+                      const ClearanceOptions& clearance);
+
+/// What was driven on a floor, visit by visit, in world.
+std::vector<FreeSpace::Points> DrivenOn(const BuildingMap& map, FloorId floor);
 
 }  // namespace masked_mapper

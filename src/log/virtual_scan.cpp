@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/virtual_scan.hpp"
+#include "virtual_scan.hpp"
 
 #include <algorithm>
 #include <array>

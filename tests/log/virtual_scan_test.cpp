@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/virtual_scan.hpp"
+#include "log/virtual_scan.hpp"
 
 #include <gtest/gtest.h>
 

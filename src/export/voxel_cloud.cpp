@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/rendering/voxel_cloud.hpp"
+#include "voxel_cloud.hpp"
 
 #include <algorithm>
 #include <cmath>

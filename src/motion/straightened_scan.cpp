@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/straightened_scan.hpp"
+#include "straightened_scan.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/sensor/beam_sweep.hpp"
+#include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/sensor/ground.hpp"
+#include "log/ground.hpp"
 
 #include <gtest/gtest.h>
 
