@@ -14,7 +14,6 @@
 #include "commands.hpp"
 #include "export_space.hpp"
 #include "masked_mapper/editing/edits.hpp"
-#include "masked_mapper/export/handover.hpp"
 #include "masked_mapper/export/output_folder.hpp"
 #include "masked_mapper/export/single_export.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"

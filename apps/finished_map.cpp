@@ -11,7 +11,7 @@
 
 #include "interrupt.hpp"
 #include "masked_mapper/export/map_export.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "run_description.hpp"

@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "map_info.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/text/number_text.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "masked_mapper/log/live_log.hpp"
 #include "masked_mapper/log/log_source.hpp"
-#include "masked_mapper/log/spool.hpp"
 #include "progress_bar.hpp"
 
 namespace masked_mapper {

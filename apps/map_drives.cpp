@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "masked_mapper/joining/drive_joining.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/mapping/map_log.hpp"
 #include "masked_mapper/text/input_error.hpp"

@@ -15,7 +15,7 @@
 
 #include "map_run.hpp"
 #include "masked_mapper/export/output_folder.hpp"
-#include "masked_mapper/log/spool.hpp"
+#include "masked_mapper/log/live_log.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "progress_bar.hpp"
 

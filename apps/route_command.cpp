@@ -13,7 +13,6 @@
 #include "commands.hpp"
 #include "masked_mapper/editing/edits.hpp"
 #include "masked_mapper/export/map_export.hpp"
-#include "masked_mapper/export/route_report.hpp"
 #include "masked_mapper/map_file/saved_map.hpp"
 #include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/routing/route.hpp"

@@ -9,6 +9,7 @@
 
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
+#include "masks/openings.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,6 @@
 #include <random>
 #include <string>
 
-#include "masked_mapper/optimization/closure_audit.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "optimization/g2o_graph.hpp"
 

@@ -11,6 +11,7 @@
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/scan_matching/joint_matcher.hpp"
 #include "scan_matching/correlative_search.hpp"
+#include "scan_matching/refine_match.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/wall_lines.hpp"
-#include "masked_mapper/routing/crossings.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/export/single_export.hpp"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/export/handover.hpp"
 #include "masked_mapper/geometry/polygon.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "occupancy_grid_file.hpp"

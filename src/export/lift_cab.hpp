@@ -6,7 +6,7 @@
 #include <string>
 
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/routing/crossings.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {
 

@@ -16,13 +16,13 @@
 #include "floor_label.hpp"
 #include "g2o_file.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/rendering/point_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"
 #include "octomap_file.hpp"
 #include "point_cloud_file.hpp"
 #include "report.hpp"
 #include "trajectory_file.hpp"
+#include "wall_cloud.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cloud_poses.hpp"
-#include "masked_mapper/rendering/space_states.hpp"
+#include "masked_mapper/rendering/space_votes.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "occupancy_grid_file.hpp"

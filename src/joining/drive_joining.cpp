@@ -14,8 +14,8 @@
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/drives.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"

@@ -5,7 +5,7 @@
 
 #include "evidence.hpp"
 #include "known_map.hpp"
-#include "masked_mapper/masks/mask.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/motion/motion_estimator.hpp"
 #include "pose_tracker.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "carmen_reader.hpp"
 #include "log_plan.hpp"
-#include "masked_mapper/log/spool.hpp"
+#include "masked_mapper/log/live_log.hpp"
 #include "masked_mapper/log/sqlite_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "odometry_mending.hpp"

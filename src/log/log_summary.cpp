@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "odometry_at_scans.hpp"
 
 namespace masked_mapper {

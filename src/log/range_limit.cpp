@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "masked_mapper/log/spool.hpp"
+#include "masked_mapper/log/live_log.hpp"
 #include "open_bag.hpp"
 
 namespace masked_mapper {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "angle_as_meant.hpp"
-#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -9,8 +9,7 @@
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/closure_matcher.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
-#include "masked_mapper/optimization/closure_audit.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "open_revisits.hpp"
 #include "submaps.hpp"

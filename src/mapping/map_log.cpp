@@ -12,7 +12,7 @@
 #include "masked_mapper.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
 #include "masked_mapper/log/log_summary.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
 #include "masked_mapper/sensor/state_archive.hpp"
 #include "masked_mapper/text/input_error.hpp"

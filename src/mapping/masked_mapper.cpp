@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "masked_mapper/geometry/angle.hpp"
-#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
+#include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 

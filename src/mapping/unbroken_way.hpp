@@ -8,7 +8,6 @@
 
 #include "masked_mapper/motion/motion_estimator.hpp"
 #include "masked_mapper/sensor/observation.hpp"
-#include "masked_mapper/sensor/time_span.hpp"
 
 namespace masked_mapper {
 

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "masked_mapper/log/log_source.hpp"
-#include "masked_mapper/motion/standstill_check.hpp"
 #include "masked_mapper/motion/wheel_check.hpp"
+#include "masked_mapper/sensor/observation.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
-#include "masked_mapper/sensor/time_span.hpp"
 #include "unbroken_way.hpp"
 
 namespace masked_mapper {

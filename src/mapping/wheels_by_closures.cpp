@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/motion/motion_options.hpp"
 
 namespace masked_mapper {

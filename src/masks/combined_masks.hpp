@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "masked_mapper/masks/mask.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 
 namespace masked_mapper {
 

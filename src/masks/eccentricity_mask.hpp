@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "isovist.hpp"
-#include "masked_mapper/masks/mask.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 
 namespace masked_mapper {
 

@@ -2,7 +2,7 @@
 // The two masks without a condition (Section III-D, 1 and 2).
 #pragma once
 
-#include "masked_mapper/masks/mask.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 
 namespace masked_mapper {
 

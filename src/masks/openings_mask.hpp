@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/masks/mask.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
+#include "masked_mapper/masks/mask_registry.hpp"
 #include "openings.hpp"
 
 namespace masked_mapper {

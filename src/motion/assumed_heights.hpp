@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 
 namespace masked_mapper {
 

@@ -10,7 +10,7 @@
 
 #include "floor_pressure.hpp"
 #include "masked_mapper/motion/floor_options.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "wheel_track.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "wheel_track.hpp"
 
 namespace masked_mapper {

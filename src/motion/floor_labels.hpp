@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_options.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "wheel_track.hpp"
 

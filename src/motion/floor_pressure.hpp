@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "masked_mapper/motion/floor_options.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "pressure_heights.hpp"
 #include "wheel_track.hpp"
 

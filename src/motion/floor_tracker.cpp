@@ -11,7 +11,7 @@
 #include "floor_labels.hpp"
 #include "floor_lidar.hpp"
 #include "floor_pressure.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 #include "pressure_heights.hpp"
 #include "wheel_track.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/standstill_check.hpp"
+#include "masked_mapper/motion/wheel_check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/median.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "turn_fit.hpp"
 
 namespace masked_mapper {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "masked_mapper/sensor/observation.hpp"
-#include "masked_mapper/sensor/time_span.hpp"
 
 namespace masked_mapper {
 

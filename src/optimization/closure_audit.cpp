@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/optimization/closure_audit.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/options/option_table.hpp"
 
 #include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/yaml_tree.hpp"
 

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "floor_volume.hpp"
+#include "masked_mapper/rendering/space_votes.hpp"
 #include "space_volume.hpp"
 
 namespace masked_mapper {

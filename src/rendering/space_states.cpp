@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/rendering/space_states.hpp"
+#include "masked_mapper/rendering/space_votes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "masked_mapper/rendering/space_votes.hpp"
+
 namespace masked_mapper {
 namespace {
 

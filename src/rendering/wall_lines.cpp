@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

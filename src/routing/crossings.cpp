@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/routing/crossings.hpp"
+#include "masked_mapper/routing/lanes.hpp"
 
 #include <algorithm>
 #include <cmath>

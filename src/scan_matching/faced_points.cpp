@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

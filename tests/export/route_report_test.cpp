@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/route_report.hpp"
+#include "masked_mapper/export/map_export.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "export/sample_map.hpp"
-#include "masked_mapper/export/map_export.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/geometry/uncertain_pose2.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
-
-#include "masked_mapper/geometry/uncertain_pose2.hpp"
 
 namespace masked_mapper {
 namespace {

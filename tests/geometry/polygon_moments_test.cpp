@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "log/bag_bytes.hpp"
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_source.hpp"
 
 namespace masked_mapper::bag_drive {

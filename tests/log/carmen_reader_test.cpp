@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

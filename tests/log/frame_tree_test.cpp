@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_writer.hpp"
 
 namespace masked_mapper {

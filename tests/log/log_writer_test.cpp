@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 
 namespace masked_mapper {

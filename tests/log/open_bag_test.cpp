@@ -13,6 +13,7 @@
 #include "log/ros2_bag_writing.hpp"
 #include "log/temporary_file.hpp"
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/log_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -7,7 +7,7 @@
 #include "log/open_bag.hpp"
 #include "log/ros_point_cloud.hpp"
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/text/input_error.hpp"

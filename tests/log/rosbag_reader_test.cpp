@@ -11,7 +11,7 @@
 
 #include "log/bag_bytes.hpp"
 #include "log/temporary_file.hpp"
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

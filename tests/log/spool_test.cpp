@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/spool.hpp"
+#include "masked_mapper/log/live_log.hpp"
 
 #include <gtest/gtest.h>
 

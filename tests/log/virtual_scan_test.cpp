@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "sensor/room_cloud.hpp"
 
 namespace masked_mapper {

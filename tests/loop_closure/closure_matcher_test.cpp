@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/ring_logs.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "mapping/ring_logs.hpp"
 #include "masked_mapper/editing/edits.hpp"
+#include "masked_mapper/map/surroundings.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/map_file/checkpoint_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +7,6 @@
 
 #include "export/sample_map.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/map_file/checkpoint_file.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/mapping/log_survey.hpp"
 
 #include <gtest/gtest.h>
 
 #include "log/temporary_file.hpp"
 #include "masked_mapper/log/log_writer.hpp"
-#include "masked_mapper/mapping/log_survey.hpp"
 #include "sensor/sweeping_scanner.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/floor_transit.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
 
 #include <gtest/gtest.h>
 

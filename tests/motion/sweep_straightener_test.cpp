@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/motion/sweep_straightener.hpp"
+#include "masked_mapper/motion/sweep_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/optimization/closure_audit.hpp"
+#include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 
 #include <gtest/gtest.h>
 

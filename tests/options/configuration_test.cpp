@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/options/option_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,6 @@
 #include <sstream>
 
 #include "house/source_tree.hpp"
-#include "masked_mapper/options/option_table.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

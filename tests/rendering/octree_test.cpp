@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/rendering/space_votes.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <random>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "scan_matching/box_scene.hpp"
 
 namespace masked_mapper {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "masked_mapper/sensor/lidar_cloud.hpp"
 
 namespace masked_mapper {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 #include "simulation/building_file.hpp"
 #include "simulation/building_plans.hpp"
 

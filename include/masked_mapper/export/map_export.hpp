@@ -16,6 +16,7 @@
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/octree.hpp"
+#include "masked_mapper/routing/route.hpp"
 
 namespace masked_mapper {
 
@@ -53,5 +54,11 @@ std::vector<std::filesystem::path> ExportedFiles(const BuildingMap& result);
 /// as does a warning in the summary. Throws InputError for a label that cannot name a file.
 Summary WriteMap(const BuildingMap& result, const RunDescription& run, const ExportOptions& options,
                  const std::filesystem::path& folder);
+
+/// One self-contained page: the map's report, the way drawn into it. `grids` by FloorId. Points of
+/// scans are drawn up to `max_range_m`. Throws std::runtime_error when it cannot be written.
+void WriteRouteReport(const BuildingMap& map, const RunDescription& run,
+                      const std::vector<OccupancyGrid>& grids, double max_range_m,
+                      const Route& route, const std::filesystem::path& path);
 
 }  // namespace masked_mapper

@@ -4,7 +4,7 @@
 //   `T_a_b` maps coordinates in frame b to coordinates in frame a; it is also the pose of b in a.
 //   Adjacent letters cancel: T_a_c = T_a_b * T_b_c, points_in_a = T_a_b * points_in_b.
 //
-// Metres and radians.
+// Metres and radians everywhere inside; degrees appear only in names ending in `_deg`.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "masked_mapper/geometry/angle.hpp"
-
 namespace masked_mapper {
+
+constexpr double kPi = 3.14159265358979323846;
+
+constexpr double DegToRad(double angle_deg) { return angle_deg * (kPi / 180.0); }
+constexpr double RadToDeg(double angle_rad) { return angle_rad * (180.0 / kPi); }
+
+/// The same direction in (-pi, pi]. Exact for angles already there; NaN stays NaN.
+inline double WrapAngle(double angle_rad) {
+  if (angle_rad > -kPi && angle_rad <= kPi) return angle_rad;
+  const double wrapped = std::remainder(angle_rad, 2.0 * kPi);
+  return wrapped <= -kPi ? wrapped + 2.0 * kPi : wrapped;
+}
 
 struct Pose2 {
   double x = 0.0;

@@ -12,7 +12,6 @@
 #include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
 #include "masked_mapper/scan_matching/matcher_options.hpp"
 
 namespace masked_mapper {

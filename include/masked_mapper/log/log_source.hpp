@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/sensor/observation.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
-#include "masked_mapper/sensor/time_span.hpp"
 
 namespace masked_mapper {
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 
-#include "masked_mapper/optimization/closure_audit.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 #include "masked_mapper/scan_matching/matcher_options.hpp"

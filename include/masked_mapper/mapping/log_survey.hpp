@@ -12,7 +12,7 @@
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/motion/motion_options.hpp"
-#include "masked_mapper/motion/sweep_straightener.hpp"
+#include "masked_mapper/motion/sweep_check.hpp"
 
 namespace masked_mapper {
 

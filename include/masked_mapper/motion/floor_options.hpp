@@ -9,11 +9,6 @@
 
 namespace masked_mapper {
 
-struct StoreyOptions {
-  double min_gap = 2.4;         ///< m between two floors at least
-  double typical_height = 3.5;  ///< m between floors, where nothing measures it
-};
-
 struct FloorLabelOptions {
   double late_s = 60.0;       ///< s by which a label may be late or early, where none says `-`
   double cab_radius = 0.25;   ///< m within which a robot stays while it turns round in a cab

@@ -10,7 +10,6 @@
 
 #include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
-#include "masked_mapper/motion/floor_transit.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {

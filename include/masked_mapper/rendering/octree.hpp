@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/rendering/space_states.hpp"
 
 namespace octomap {
 class OcTree;
 }
 
 namespace masked_mapper {
+
+class SpaceStates;
 
 struct OctreeOptions {
   double wall_height_m = 1.6;  ///< walls reach from the floor's elevation up to here

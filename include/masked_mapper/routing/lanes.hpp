@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sparse graph of ways for fleet managers and route servers: along what was driven, straight
+// How a building hangs together for who goes about it: the elevators and stairs that were driven,
+// and a sparse graph of ways for fleet managers and route servers: along what was driven, straight
 // where nothing stands in between, with the stops of elevators and stairs and all named places.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -11,9 +13,31 @@
 
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/routing/crossings.hpp"
 
 namespace masked_mapper {
+
+enum class CrossingKind { kElevator, kStairs };
+constexpr std::array<const char*, 2> NamesOf(CrossingKind /*any*/) {
+  return {"elevator", "stairs"};
+}
+
+/// Where the robot stood when it left a floor, or came to one: in the cab, or where stairs begin.
+struct Stop {
+  FloorId floor = 0;
+  Pose2 T_world_robot;
+  /// Where it had come from, or went then: on the floor, out of the door.
+  Eigen::Vector2d outside_in_world = Eigen::Vector2d::Zero();
+};
+
+struct Crossing {
+  CrossingKind kind = CrossingKind::kElevator;
+  std::vector<Stop> stops;           ///< of different floors, in order of elevations; stairs: two
+  std::vector<Eigen::Vector2d> way;  ///< of stairs: in world, from the first stop to the second
+};
+
+/// In order of first use. Rides whose cabs stood at one place of a floor are rides of one cab, and
+/// any two of its floors are one ride apart.
+std::vector<Crossing> CrossingsOf(const BuildingMap& map);
 
 /// For whom there has to be room.
 struct ClearanceOptions {

@@ -10,7 +10,6 @@
 
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
-#include "masked_mapper/routing/crossings.hpp"
 #include "masked_mapper/routing/lanes.hpp"
 
 namespace masked_mapper {

@@ -39,4 +39,12 @@ inline double Stamp(const Observation& observation) {
   return std::visit([](const auto& reading) { return reading.stamp; }, observation);
 }
 
+struct TimeSpan {
+  double start = 0.0;  ///< s; minus infinity: from before the log
+  double end = 0.0;    ///< s; plus infinity: past the end of the log
+
+  double Duration() const { return end - start; }
+  bool Contains(double stamp) const { return start <= stamp && stamp <= end; }
+};
+
 }  // namespace masked_mapper

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/rendering/point_cloud.hpp"
+#include "wall_cloud.hpp"
 
 namespace masked_mapper {
 
