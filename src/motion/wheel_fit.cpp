@@ -34,7 +34,7 @@ constexpr double kLeastFault = 0.1;
 constexpr double kLeastTurnFault = 0.25;
 constexpr double kSure = 4.0;      // sigmas
 constexpr double kFitting = 0.25;  // of the squares of the turns may be left where wheels tell them
-constexpr double kMirrored = -0.3;  // of turns: the scanner hangs (mount_check.hpp)
+constexpr double kMirrored = -0.3;  // of turns: the scanner hangs (FindMountFault)
 constexpr double kDead = 0.05;      // of the way is told by wheels that tell nothing
 constexpr double kUseless = 0.6;    // at the best clock: the wheels tell of other turns
 
@@ -162,11 +162,15 @@ std::optional<Estimated> FindClock(const std::vector<Stretch>& stretches, const 
   std::size_t count = as_stamped.size();
   const int steps = static_cast<int>(kMostAhead / kClockStep);
   std::vector<double> left(static_cast<std::size_t>(2 * steps + 1), at_zero);
+  const auto left_at = [&left](int step) -> double& {
+    const int place = step + steps;
+    return left[static_cast<std::size_t>(place)];
+  };
   for (int i = -steps; i <= steps; ++i) {
     const std::vector<TurnPair>& pairs = by_clock.At(kClockStep * i);
     if (pairs.size() < kFewest || 2 * pairs.size() < stretches.size()) continue;
     const TurnFit fit = FitTurns(pairs);
-    left[static_cast<std::size_t>(i + steps)] = fit.left;
+    left_at(i) = fit.left;
     if (fit.factor <= 0.0 || fit.left >= least) continue;
     if (fit.left > kFitting * fit.without) continue;
     least = fit.left;
@@ -179,9 +183,7 @@ std::optional<Estimated> FindClock(const std::vector<Stretch>& stretches, const 
   // A robot that does the same again and again fits itself at several clocks.
   for (int i = -steps; i <= steps; ++i) {
     const bool is_apart = std::abs(kClockStep * i - best.value) > kApart;
-    if (is_apart && left[static_cast<std::size_t>(i + steps)] < 2.0 * least + noise) {
-      return std::nullopt;
-    }
+    if (is_apart && left_at(i) < 2.0 * least + noise) return std::nullopt;
   }
   // The curvature of the sum of squares about its minimum.
   const auto at = static_cast<std::size_t>(std::lround(best.value / kClockStep) + steps);

@@ -9,8 +9,8 @@
 namespace masked_mapper {
 
 /// Least squares with bounded squares over the turns of all stretches, for every clock in question;
-/// the way is held against that with the best. `wheels` in order of stamps.
+/// the way is held against that with the best. `wheel_poses` in order of stamps.
 WheelReport Compare(const std::vector<WheelCheck::Stretch>& stretches,
-                    const std::vector<WheelCheck::WheelPose>& wheels);
+                    const std::vector<WheelCheck::WheelPose>& wheel_poses);
 
 }  // namespace masked_mapper
