@@ -149,7 +149,7 @@ std::string Closing(const Localization& drive, const std::string& doubt, std::si
   for (const LocatedScan& scan : drive.scans) placed += scan.placed ? 1 : 0;
   std::string text = drive.found
                          ? "found after " + FixedText(drive.found_after_m, 1) + " m of driving"
-                         : "not found: nothing of this drive was recognised in the map";
+                         : "not found: " + doubt;
   text += "\n  placed    " + std::to_string(placed) + " of " + std::to_string(drive.scans.size()) +
           " scans\n  matches   " + std::to_string(drive.matches) + ", searches on whole floors " +
           std::to_string(drive.searches) + "\n";
@@ -200,7 +200,8 @@ int RunLocalize(const LocalizeArguments& arguments) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const std::vector<std::string> logs =
       arguments.follow.empty() ? arguments.logs : std::vector<std::string>{arguments.follow};
-  const LocalizationRun description{logs, arguments.map, taken.count(), run.warnings()};
+  const LocalizationRun description{logs, arguments.map, taken.count(), run.warnings(),
+                                    localizer.Doubt()};
   OutputFolder folder(arguments.out, existing);
   WriteLocalization(saved.result, localizer.result(), changes, description, folder.path());
   ThrowIfInterrupted();
@@ -209,7 +210,7 @@ int RunLocalize(const LocalizeArguments& arguments) {
   if (arguments.json) {
     std::cout << LocalizationSummaryText(saved.result, localizer.result(), changes, description);
   } else if (!arguments.quiet && !arguments.poses) {
-    std::cout << Closing(localizer.result(), localizer.Doubt(), changes.size())
+    std::cout << Closing(localizer.result(), description.doubt, changes.size())
               << "drive: " << arguments.out << "\n";
   }
   return 0;

@@ -37,8 +37,8 @@ Json FloorsOf(const BuildingMap& map, const Localization& drive) {
   return labels;
 }
 
-std::string Words(const Localization& drive) {
-  if (!drive.found) return "Not found: nothing of this drive was recognised in the map.";
+std::string Words(const Localization& drive, const LocalizationRun& run) {
+  if (!drive.found) return "Not found: " + run.doubt + ".";
   return "Found after " + FixedText(drive.found_after_m, 1) + " m of driving; " +
          std::to_string(PlacedOf(drive)) + " of " + std::to_string(drive.scans.size()) +
          " scans placed, " + std::to_string(drive.matches) + " matched.";
@@ -69,6 +69,7 @@ std::string LocalizationSummaryText(const BuildingMap& map, const Localization& 
                                {"y", change.y},
                                {"size_m", change.size_m}});
   }
+  json["doubt"] = run.doubt.empty() ? Json(nullptr) : Json(run.doubt);
   json["logs"] = run.logs;
   json["map"] = run.map;
   json["warnings"] = run.warnings;
@@ -107,7 +108,7 @@ void WriteLocalization(const BuildingMap& map, const Localization& drive,
   WriteFile(folder / "trajectory.tum", trajectory);
   WriteFile(folder / "floors.csv", floors);
   WriteFile(folder / "summary.json", LocalizationSummaryText(map, drive, changes, run));
-  WriteFile(folder / "page.html", LocalizationPage(map, drive, changes, Words(drive)));
+  WriteFile(folder / "page.html", LocalizationPage(map, drive, changes, Words(drive, run)));
 }
 
 }  // namespace masked_mapper

@@ -54,6 +54,20 @@ PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_
   return static_cast<PatchFit>(100.0 * sum / known);
 }
 
+bool FitsBetter(const LaserScan& scan, const SearchableFloor& floor, const Pose2& T_world_robot,
+                const Pose2& T_world_other) {
+  // Where the map says nothing a patch fits neither well nor badly.
+  const auto percent = [&](const Patch& patch, const Pose2& T_world) {
+    const PatchFit fit = FitOf(patch, floor, T_world);
+    return int{fit == kMapSaysNothing ? kFits : fit};
+  };
+  int lead = 0;
+  for (const Patch& patch : HitsOf(scan, Pose2())) {
+    lead += percent(patch, T_world_robot) - percent(patch, T_world_other);
+  }
+  return lead > 0;
+}
+
 void Tally::Add(PatchFit fit) {
   if (fit == kMapSaysNothing || fit == kFreeAsSeen) return;
   if (fit >= kFits) {
@@ -67,6 +81,34 @@ double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& op
   const double right = options.agrees_in_place;
   return tally.agreeing * std::log(right / agrees_wrong) +
          tally.contradicting * std::log((1.0 - right) / (1.0 - agrees_wrong));
+}
+
+void WayOffTheMap::Add(PatchFit fit, double at_m, const EvidenceOptions& options) {
+  constexpr double kLook = 3.0;   // m
+  constexpr int kLeast = 5;       // patches
+  constexpr double kShare = 0.8;  // of them, of which the map says nothing: rooms seen through a
+                                  // door are fewer
+  if (at_m >= look_begins_m_ + kLook) {
+    if (known_ + unknown_ >= kLeast) {
+      const bool is_off = unknown_ > kShare * (known_ + unknown_);
+      if (is_off) {
+        nats_ += is_off_ ? kLook * std::log(1.0 - options.comes_back_per_m)
+                         : std::log(kLook * options.leaves_map_per_m);
+      }
+      is_off_ = is_off;
+    }
+    look_begins_m_ = at_m;
+    known_ = unknown_ = 0;
+  }
+  ++(fit == kMapSaysNothing ? unknown_ : known_);
+}
+
+double SlipNats(double slip_m, double way_m) {
+  constexpr double kAtOnce = 0.1;      // m, standard deviation
+  constexpr double kPerMetre = 0.005;  // m per m of the way
+  constexpr double kMost = 4.0;        // standard deviations: more, and motion broke
+  const double slip = std::min(kMost, slip_m / std::hypot(kAtOnce, kPerMetre * way_m));
+  return -0.5 * slip * slip;
 }
 
 namespace {
@@ -106,8 +148,9 @@ double LogSum(double a, double b) {
   return most + std::log(std::exp(a - most) + std::exp(b - most));
 }
 
-// How likely the patches are when the first place is right. None of the three ways in which the
-// second may come by what it shows is likelier than the others beforehand.
+// How likely the patches are when the first place is right. What the second shows may have nothing
+// to do with it, or it is a copy: of all places of a map, about one. Whether a copy is told apart
+// by noise alone, or by what is really different, is open.
 double NatsOfFirst(const PairTally& tally, const EvidenceOptions& options) {
   const double right = options.agrees_in_place;
   const Tally at_first{tally.both + tally.first, tally.second + tally.neither};
@@ -115,8 +158,13 @@ double NatsOfFirst(const PairTally& tally, const EvidenceOptions& options) {
   const double first = Nats(at_first, right) + Nats(tally.first_only, right);
   const double unrelated = first + Nats(at_second, options.agrees_elsewhere) +
                            Nats(tally.second_only, options.agrees_elsewhere);
-  // Of copies, which of the two agrees is a question of its own.
+  // Of copies, which of the two agrees is a question of its own; and that they are copies where the
+  // map shows only one of them is less likely the farther it goes beyond where it shows both (rule
+  // of succession).
   const int different = tally.first + tally.second;
+  const int shared = tally.both + tally.neither + different;
+  const int beyond = tally.second_only.agreeing + tally.second_only.contradicting;
+  const double goes_on = std::log((shared + 1.0) / (shared + beyond + 1.0));
   const double alike = Nats({tally.both, tally.neither}, right) + Nats(tally.first_only, right) +
                        Nats(tally.second_only, right) +
                        (tally.both + tally.neither) * std::log(1.0 - options.differs_in_copies) +
@@ -124,7 +172,7 @@ double NatsOfFirst(const PairTally& tally, const EvidenceOptions& options) {
   const double by_noise = alike + different * std::log(0.5);
   const double told_apart = alike + tally.first * std::log(options.speaks_for_right) +
                             tally.second * std::log(1.0 - options.speaks_for_right);
-  return LogSum(unrelated, LogSum(by_noise, told_apart));
+  return LogSum(unrelated, LogSum(by_noise, told_apart) + goes_on - options.copy_nats);
 }
 
 }  // namespace

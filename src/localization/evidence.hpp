@@ -27,6 +27,10 @@ struct EvidenceOptions {
   double speaks_for_right = 0.9;   ///< share of the patches that tell two copies apart
   double differs_in_copies = 0.1;  ///< share of patches that agree with one of two copies alone
   double told_apart_nats = 7.0;    ///< of a place against one other: a thousand to one
+  double copy_nats = 9.0;          ///< by which a pair of places is likelier not to be copies
+  double leaves_map_per_m =
+      0.005;                       ///< of a robot: how likely it is to go where the map has nothing
+  double comes_back_per_m = 0.05;  ///< and back
 };
 
 /// How well a patch fits, in percent, or one of what follows.
@@ -36,6 +40,10 @@ constexpr PatchFit kFreeAsSeen = 200;  ///< as most of any building: it tells li
 
 /// How well it fits with the robot's motion path lying at T_world_odom on `floor`.
 PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_world_odom);
+
+/// Whether a scan fits the floor better from one pose than from another.
+bool FitsBetter(const LaserScan& scan, const SearchableFloor& floor, const Pose2& T_world_robot,
+                const Pose2& T_world_other);
 
 /// What all patches say of one place.
 struct Tally {
@@ -47,6 +55,30 @@ struct Tally {
 
 /// How much likelier the right place made them than a wrong one, of which `agrees_wrong` agree.
 double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& options);
+
+/// What of a robot's way lies where the map has nothing. That is a few stretches of many metres
+/// rather than a metre here and there: what is dear is to leave the map.
+class WayOffTheMap {
+ public:
+  /// What was seen next, at `at_m` of the way; only what was judged.
+  void Add(PatchFit fit, double at_m, const EvidenceOptions& options);
+
+  /// How much likelier a robot on the map is to have driven so than one that never leaves it; not
+  /// above 0.
+  double nats() const { return nats_; }
+
+ private:
+  double look_begins_m_ = -1e9;
+  int known_ = 0;
+  int unknown_ = 0;
+  bool is_off_ = false;
+  double nats_ = 0.0;
+};
+
+/// A place that looks alike for a while fits on only by moving along: corridors whose doors are
+/// spaced otherwise. How much likelier motion is not to have been off by `slip_m` after `way_m`
+/// than to have been; as a negative number.
+double SlipNats(double slip_m, double way_m);
 
 /// How much likelier it is that the first of two places is the right one than the other.
 double LeadOf(const std::vector<PatchFit>& one, const std::vector<PatchFit>& other,

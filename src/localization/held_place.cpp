@@ -34,7 +34,7 @@ bool HeldPlace::Match(const LaserScan& scan, const UncertainPose2& guess, Mask& 
                       MotionEstimator& motion) {
   match_is_due_ = false;
   tried_at_m_ = travelled_m_;
-  const std::optional<UncertainPose2> match = tracker_.Match(PointsInRobot(scan), floor_, guess);
+  const std::optional<UncertainPose2> match = tracker_.Match(scan, floor_, guess);
   if (!match) return false;
   T_world_matched_ = *match;
   matched_at_m_ = travelled_m_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFirstSearch = 2.0;  // m of the way; before it a scan or two are no place
 constexpr double kSearched = 16.0;    // m of the way that are looked for
+constexpr double kJudged = 40.0;      // m of the way by which what is found is judged
 constexpr double kFollowed = 4.0;     // m of the way by which a hypothesis is held in place
 constexpr double kAlike = 0.12;       // of score; what fits that much worse is no rival
 constexpr double kLeastScore = 0.5;   // of the coarse search
@@ -107,7 +108,17 @@ void Hypotheses::Judge(Hypothesis& hypothesis, std::size_t first_patch) const {
   for (std::size_t i = first_patch; i < patches_.size(); ++i) {
     hypothesis.fits.push_back(FitOf(patches_[i].patch, floor, hypothesis.T_world_odom));
     hypothesis.tally.Add(hypothesis.fits.back());
+    hypothesis.off_the_map.Add(hypothesis.fits.back(), patches_[i].at_m, options_);
   }
+}
+
+void Hypotheses::NoteSlip(Hypothesis& hypothesis, const Stretch& stretch) const {
+  if (stretch.length_m() < hypothesis.found_m + kFollowed) return;
+  if (!hypothesis.settled) hypothesis.settled = {hypothesis.T_world_odom, stretch.length_m()};
+  const Pose2 T_world_slipped = hypothesis.T_world_odom * stretch.T_odom_robot();
+  const Pose2 T_world_unslipped = hypothesis.settled->T_world_odom * stretch.T_odom_robot();
+  hypothesis.slip_nats = SlipNats(Distance(T_world_slipped, T_world_unslipped),
+                                  stretch.length_m() - hypothesis.settled->at_m);
 }
 
 // The motion path drifts; what was seen last holds it in place.
@@ -119,6 +130,7 @@ void Hypotheses::Follow(Hypothesis& hypothesis, const Stretch& stretch, std::siz
   const PlaceFit fit = fine.Climb(fine.Thinned(*stretch.Points(kFollowed)), T_world_robot);
   if (fit.score < kLeastFit || Distance(fit.T_world_place, T_world_robot) > kLargestStep) return;
   hypothesis.T_world_odom = fit.T_world_place * Inverse(stretch.T_odom_robot());
+  NoteSlip(hypothesis, stretch);
   hypothesis.anchors.push_back({scan, hypothesis.floor, hypothesis.T_world_odom});
 }
 
@@ -129,7 +141,7 @@ void Hypotheses::Step(Stretch& stretch, std::size_t scan,
     patches_.push_back({std::move(patch), stretch.length_m()});
   }
   for (SeenPatch& old : patches_) {  // none found later is judged by it
-    if (old.at_m < stretch.length_m() - kSearched) old.patch.points_in_odom.clear();
+    if (old.at_m < stretch.length_m() - kJudged) old.patch.points_in_odom.clear();
   }
   for (Hypothesis& hypothesis : hypotheses_) {
     Follow(hypothesis, stretch, scan);
@@ -156,11 +168,12 @@ bool Hypotheses::IsKnown(const Hypothesis& found, const Pose2& T_odom_robot, dou
   });
 }
 
-// Judged by what was seen over the stretch that was searched for.
+// Judged by what was seen for so long that the motion path still holds together.
 void Hypotheses::Add(Hypothesis&& hypothesis) {
   std::size_t first_patch = patches_.size();
   while (first_patch > 0 && !patches_[first_patch - 1].patch.points_in_odom.empty()) --first_patch;
   hypothesis.anchors.push_back({first_scan_, hypothesis.floor, hypothesis.T_world_odom});
+  hypothesis.first_patch = first_patch;
   Judge(hypothesis, first_patch);
   hypotheses_.push_back(std::move(hypothesis));
 }
@@ -187,6 +200,7 @@ void Hypotheses::SearchAround(const Stretch& stretch, const UncertainPose2& T_wo
     Hypothesis hypothesis;
     hypothesis.floor = id;
     hypothesis.prior_nats = nats - std::log(places);
+    hypothesis.found_m = stretch.length_m();
     hypothesis.T_world_odom =
         fine.Climb(thinned, near.T_world_place).T_world_place * Inverse(stretch.T_odom_robot());
     if (!IsKnown(hypothesis, stretch.T_odom_robot(), kSameM, kSameDeg)) Add(std::move(hypothesis));
@@ -196,6 +210,11 @@ void Hypotheses::SearchAround(const Stretch& stretch, const UncertainPose2& T_wo
 void Hypotheses::Search(const Stretch& stretch) {
   const ScanPoints::Ptr points = stretch.Points(kSearched);
   ++searches_;
+  // What an earlier search, which was complete, did not come upon, and fits now, must have been
+  // elsewhere before, against which all speaks that was seen there.
+  const bool was_complete = search_was_complete_ && !hypotheses_.empty();
+  const double known =
+      was_complete ? std::clamp(Nats(hypotheses_.front()), 0.0, options_.believed_nats) : 0.0;
   search_was_complete_ = true;
   double best = 0.0;
   std::vector<std::pair<FloorId, std::vector<Eigen::Vector2d>>> searched;
@@ -218,7 +237,8 @@ void Hypotheses::Search(const Stretch& stretch) {
              thinned, std::max(kLeastScore, best - kAlike), kPlaceM, kPlaceDeg)) {
       Hypothesis hypothesis;
       hypothesis.floor = id;
-      hypothesis.prior_nats = -map_.LogPlaces() - elsewhere_nats_;
+      hypothesis.prior_nats = -map_.LogPlaces() - std::max(elsewhere_nats_, known);
+      hypothesis.found_m = stretch.length_m();
       const double within_m = 0.5;
       const PlaceFit fine = floor.fine().FindNear(fine_points, coarse.T_world_place, within_m, 2.0);
       hypothesis.T_world_odom = floor.fine().Climb(fine_points, fine.T_world_place).T_world_place *
@@ -285,9 +305,22 @@ std::string Hypotheses::Description() const {
          (floors.size() == 1 ? " floor" : " floors") + " come into question";
 }
 
+double Hypotheses::NatsOffTheMap(const Hypothesis& hypothesis, std::size_t first_patch) const {
+  WayOffTheMap way;
+  for (std::size_t i = first_patch; i < hypothesis.fits.size(); ++i) {
+    way.Add(hypothesis.fits[i], patches_[i].at_m, options_);
+  }
+  return way.nats();
+}
+
 bool Hypotheses::IsBehind(const Hypothesis& rival, const Hypothesis& best) const {
   const double prior = std::max(0.0, best.prior_nats - rival.prior_nats);
-  return LeadOf(best.fits, rival.fits, options_) + prior >= options_.told_apart_nats;
+  // Over the way by which both were judged: of one that was found late, nothing before it is known.
+  const std::size_t since = std::max(rival.first_patch, best.first_patch);
+  const double off_the_map = NatsOffTheMap(best, since) - NatsOffTheMap(rival, since);
+  const double slips = best.slip_nats - rival.slip_nats;
+  return LeadOf(best.fits, rival.fits, options_) + prior + off_the_map + slips >=
+         options_.told_apart_nats;
 }
 
 }  // namespace masked_mapper

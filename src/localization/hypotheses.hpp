@@ -27,13 +27,26 @@ struct Hypothesis {
   Pose2 T_world_odom;
   double prior_nats = 0.0;  ///< before anything was seen, against all other places together
   Tally tally;
-  std::vector<PatchFit> fits;       ///< of all patches, in order; none from before it was found
+  WayOffTheMap off_the_map;
+  std::vector<PatchFit> fits;       ///< of all patches, in order
+  std::size_t first_patch = 0;      ///< the first by which it was judged
   std::vector<PathAnchor> anchors;  ///< in order of scans
+  double found_m = 0.0;             ///< of the stretch
+  /// Where the motion path lay when the first metres had put it right, and where it has had to be
+  /// moved since to fit on: nearly not at all in the right place.
+  struct Settled {
+    Pose2 T_world_odom;
+    double at_m = 0.0;  ///< of the stretch
+  };
+  std::optional<Settled> settled;
+  double slip_nats = 0.0;  ///< how much likelier motion is to have slipped so than not; not above 0
 };
 
 class Hypotheses {
  public:
-  Hypotheses(const KnownMap& map, const EvidenceOptions& options) : map_(map), options_(options) {}
+  Hypotheses(const KnownMap& map, const EvidenceOptions& options) : map_(map), options_(options) {
+    options_.copy_nats = map.LogPlaces();
+  }
 
   /// Nothing is known; what follows is seen from `scan` on.
   void Restart(std::size_t scan);
@@ -68,9 +81,11 @@ class Hypotheses {
     double at_m = 0.0;  ///< of the stretch
   };
   double Nats(const Hypothesis& hypothesis) const {
-    return hypothesis.prior_nats + NatsOf(hypothesis.tally, options_.agrees_elsewhere, options_);
+    return hypothesis.prior_nats + hypothesis.off_the_map.nats() + hypothesis.slip_nats +
+           NatsOf(hypothesis.tally, options_.agrees_elsewhere, options_);
   }
   void Judge(Hypothesis& hypothesis, std::size_t first_patch) const;
+  void NoteSlip(Hypothesis& hypothesis, const Stretch& stretch) const;
   void Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const;
   using Whereabouts = std::vector<std::pair<FloorId, double>>;  ///< nats of each floor
 
@@ -79,6 +94,7 @@ class Hypotheses {
   void Add(Hypothesis&& hypothesis);
   bool IsKnown(const Hypothesis& found, const Pose2& T_odom_robot, double same_m,
                double same_deg) const;
+  double NatsOffTheMap(const Hypothesis& hypothesis, std::size_t first_patch) const;
   bool IsBehind(const Hypothesis& rival, const Hypothesis& best) const;
   void MergeAndOrder(const Pose2& T_odom_robot);
   void Prune();

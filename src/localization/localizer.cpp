@@ -70,6 +70,7 @@ class Localizer::Impl {
 
   std::string Doubt() const {
     if (answers_.IsSure()) return {};
+    if (!had_place_) return hypotheses_.Description();
     return is_held_ ? why_ : why_ + "; " + hypotheses_.Description();
   }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "evidence.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -24,15 +26,21 @@ bool IsSure(const Eigen::Matrix3d& covariance) {
          std::sqrt(covariance(2, 2)) < DegToRad(kSureDeg);
 }
 
-// Of two answers to one question. Where they do not go together, motion was surer than it should
-// have been: wheels slip, and walls are said to be.
-UncertainPose2 Weighed(const UncertainPose2& motion, const UncertainPose2& match) {
-  const Eigen::Vector3d off(match.mean.x - motion.mean.x, match.mean.y - motion.mean.y,
-                            WrapAngle(match.mean.theta - motion.mean.theta));
+Eigen::Vector3d Off(const UncertainPose2& motion, const UncertainPose2& match) {
+  return {match.mean.x - motion.mean.x, match.mean.y - motion.mean.y,
+          WrapAngle(match.mean.theta - motion.mean.theta)};
+}
+
+bool GoTogether(const UncertainPose2& motion, const UncertainPose2& match) {
+  const Eigen::Vector3d off = Off(motion, match);
   const Eigen::Matrix3d both = motion.covariance + match.covariance;
-  if (off.dot(both.inverse() * off) > kMostChi2) return match;
-  const Eigen::Matrix3d gain = motion.covariance * both.inverse();
-  const Eigen::Vector3d step = gain * off;
+  return off.dot(both.inverse() * off) <= kMostChi2;
+}
+
+// Of two answers to one question that go together.
+UncertainPose2 Weighed(const UncertainPose2& motion, const UncertainPose2& match) {
+  const Eigen::Matrix3d gain = motion.covariance * (motion.covariance + match.covariance).inverse();
+  const Eigen::Vector3d step = gain * Off(motion, match);
   UncertainPose2 weighed;
   weighed.mean = {motion.mean.x + step.x(), motion.mean.y + step.y(),
                   WrapAngle(motion.mean.theta + step.z())};
@@ -43,15 +51,18 @@ UncertainPose2 Weighed(const UncertainPose2& motion, const UncertainPose2& match
 
 }  // namespace
 
-std::optional<UncertainPose2> PoseTracker::Match(const ScanPoints::ConstPtr& points_in_robot,
-                                                 FloorId floor,
+std::optional<UncertainPose2> PoseTracker::Match(const LaserScan& scan, FloorId floor,
                                                  const UncertainPose2& T_world_robot) {
+  const ScanPoints::ConstPtr points_in_robot = PointsInRobot(scan);
   std::vector<NodeId> nodes = map_.NodesNear(floor, T_world_robot.mean.Translation(), kReach);
   nodes.resize(std::min(nodes.size(), kMostNodes));
   for (const NodeId node : nodes) {
-    if (const auto match = MatchWith(node, points_in_robot, T_world_robot)) {
-      return Weighed(T_world_robot, *match);
-    }
+    const std::optional<UncertainPose2> match = MatchWith(node, points_in_robot, T_world_robot);
+    if (!match) continue;
+    if (GoTogether(T_world_robot, *match)) return Weighed(T_world_robot, *match);
+    // Motion was surer than it should have been (wheels slip, and walls are said to be), or the
+    // match is wrong: what the map has beyond the node tells.
+    if (FitsBetter(scan, *map_.FloorAt(floor), match->mean, T_world_robot.mean)) return match;
   }
   return std::nullopt;
 }

@@ -19,8 +19,8 @@ class PoseTracker {
         matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map.map()) {}
 
   /// The robot's pose, from where motion puts it. Nothing: the scan fits none of the map's nodes
-  /// there.
-  std::optional<UncertainPose2> Match(const ScanPoints::ConstPtr& points_in_robot, FloorId floor,
+  /// there, or only where motion does not put it and it fits the rest of the map worse.
+  std::optional<UncertainPose2> Match(const LaserScan& scan, FloorId floor,
                                       const UncertainPose2& T_world_robot);
 
   /// Scans matched with one node each.

@@ -44,7 +44,7 @@ TEST(LocalizationExport, WritesPlacedScansAndWhatWasSure) {
   const fs::path folder = fs::path(testing::TempDir()) / "localization_export";
   fs::create_directories(folder);
   const BuildingMap map = OneFloor();
-  WriteLocalization(map, TwoScans(), {}, {{"a.log"}, "out", 0.0, {}}, folder);
+  WriteLocalization(map, TwoScans(), {}, {{"a.log"}, "out", 0.0, {}, {}}, folder);
   EXPECT_EQ(TextOf(folder / "trajectory.tum"),
             "10.5 1.000000 2.000000 3.500000 0 0 0.000000000 1.000000000\n");
   EXPECT_EQ(TextOf(folder / "floors.csv"), "t,label\n10,?\n10.5,2\n");
@@ -56,16 +56,18 @@ TEST(LocalizationExport, WritesPlacedScansAndWhatWasSure) {
   EXPECT_EQ(summary.at("placed"), 1);
   EXPECT_EQ(summary.at("floors"), nlohmann::json({"2"}));
   EXPECT_EQ(summary.at("unsure_spans").size(), 1U);
+  EXPECT_TRUE(summary.at("doubt").is_null());
   fs::remove_all(folder);
 }
 
 TEST(LocalizationExport, NotFoundIsAnAnswer) {
   Localization drive;
   drive.scans.resize(1);
-  const auto summary = nlohmann::json::parse(
-      LocalizationSummaryText(OneFloor(), drive, {}, {{"a.log"}, "out", 0.0, {}}));
+  const auto summary = nlohmann::json::parse(LocalizationSummaryText(
+      OneFloor(), drive, {}, {{"a.log"}, "out", 0.0, {}, "3 places come into question"}));
   EXPECT_FALSE(summary.at("found"));
   EXPECT_TRUE(summary.at("found_after_m").is_null());
+  EXPECT_EQ(summary.at("doubt"), "3 places come into question");
 }
 
 TEST(LocalizationExport, APoseIsOneLine) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace masked_mapper {
 namespace {
 
@@ -46,6 +48,52 @@ TEST(Evidence, WhatDiffersTellsCopiesApart) {
   const std::vector<PatchFit> copy = Fits(188, 12);
   const EvidenceOptions options;
   EXPECT_GT(LeadOf(right, copy, options), options.told_apart_nats);
+}
+
+// Where the map shows little of a place, that it is a copy of another for ever on is not for free.
+TEST(Evidence, APlaceThatIsACopyOnlyWhereTheMapHasNothingFallsBehind) {
+  const EvidenceOptions options;
+  const auto lead = [&](std::size_t beyond) {
+    std::vector<PatchFit> right = Fits(26, 0);
+    std::vector<PatchFit> rival = right;
+    right.resize(26 + beyond, kGood);
+    rival.resize(26 + beyond, kMapSaysNothing);
+    return LeadOf(right, rival, options);
+  };
+  EXPECT_LT(lead(10), lead(60));
+  EXPECT_LT(lead(60), lead(300));
+  // Rule of succession: seen to be alike 26 times, it goes on so 174 times more with 27 to 201.
+  EXPECT_NEAR(lead(174) - lead(0), std::log(201.0 / 27.0), 0.05);
+}
+
+TEST(Evidence, ARobotIsSeldomOffTheMapAndThenForAWhile) {
+  const EvidenceOptions options;
+  // Ten patches every three metres, of which so many are unknown.
+  const auto nats_of = [&](const std::vector<int>& unknown) {
+    WayOffTheMap way;
+    for (std::size_t look = 0; look <= unknown.size(); ++look) {
+      for (int i = 0; i < 10; ++i) {
+        const bool is_off = look < unknown.size() && i < unknown[look];
+        way.Add(is_off ? kMapSaysNothing : kGood, 3.0 * static_cast<double>(look), options);
+      }
+    }
+    return way.nats();
+  };
+  EXPECT_DOUBLE_EQ(nats_of({0, 0, 0}), 0.0);
+  EXPECT_DOUBLE_EQ(nats_of({3, 7, 5, 8}), 0.0);  // rooms seen through doors
+  const double once = std::log(3.0 * options.leaves_map_per_m);
+  const double on = 3.0 * std::log(1.0 - options.comes_back_per_m);
+  EXPECT_NEAR(nats_of({0, 10, 10, 10, 0}), once + 2.0 * on, 1e-9);
+  EXPECT_NEAR(nats_of({10, 0, 10, 0, 10}), 3.0 * once, 1e-9);
+}
+
+TEST(Evidence, APlaceThatMovesAlongIsNotTheRightOne) {
+  const EvidenceOptions options;
+  EXPECT_DOUBLE_EQ(SlipNats(0.0, 0.0), 0.0);
+  EXPECT_NEAR(SlipNats(0.1, 0.0), -0.5, 1e-9);
+  EXPECT_GT(SlipNats(0.3, 60.0), -1.0);                      // half a percent is motion's own
+  EXPECT_LT(SlipNats(1.0, 20.0), -options.told_apart_nats);  // five percent are not
+  EXPECT_DOUBLE_EQ(SlipNats(50.0, 20.0), SlipNats(5.0, 20.0));
 }
 
 TEST(Evidence, NothingSeenTellsNothing) {

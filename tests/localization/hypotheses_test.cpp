@@ -24,12 +24,12 @@ Walls OneSidedRoom() {
   return room;
 }
 
-/// Three floors, one as the other.
-BuildingMap MapOfTower(const Walls& room) {
+/// So many floors, one as the other.
+BuildingMap MapOfTower(const Walls& room, std::size_t storeys) {
   FloorTimeline floors;
   floors.levels.clear();
   floors.intervals.clear();
-  for (std::size_t level = 0; level < 3; ++level) {
+  for (std::size_t level = 0; level < storeys; ++level) {
     FloorLevel known;
     known.elevation = kStorey * static_cast<double>(level);
     floors.levels.push_back(known);
@@ -41,7 +41,8 @@ BuildingMap MapOfTower(const Walls& room) {
   MappingOptions options;
   options.motion.source = MotionSource::kFused;
   MaskedMapper mapper("always", options, floors);
-  for (const LaserScan& scan : Drive(room, 0, 3 * kScans, 0.0)) mapper.Observe(scan);
+  for (const LaserScan& scan : Drive(room, 0, static_cast<int>(storeys) * kScans, 0.0))
+    mapper.Observe(scan);
   return mapper.Finish();
 }
 
@@ -55,6 +56,7 @@ SearchableFloorOptions Usual() {
 
 class HypothesesTest : public testing::Test {
  protected:
+  explicit HypothesesTest(std::size_t storeys = 3) : map_(MapOfTower(room_, storeys)) {}
   void SetUp() override { hypotheses_.Restart(0); }
 
   /// Drives on by so many scans; whether a place is believed at the end.
@@ -70,12 +72,26 @@ class HypothesesTest : public testing::Test {
   }
 
   Walls room_ = OneSidedRoom();
-  BuildingMap map_ = MapOfTower(room_);
+  BuildingMap map_;
   KnownMap known_{map_, Usual()};
   Hypotheses hypotheses_{known_, EvidenceOptions()};
   Stretch stretch_;
   int driven_ = 0;
 };
+
+class HypothesesOnOneFloorTest : public HypothesesTest {
+ protected:
+  HypothesesOnOneFloorTest() : HypothesesTest(1) {}
+};
+
+// Nothing that the map knows contradicts a robot off the map; it is dear to be there.
+TEST_F(HypothesesOnOneFloorTest, APlaceOffTheMapDoesNotKeepTheRightOneFromBeingBelieved) {
+  constexpr double kAway = 300.0;  // m
+  hypotheses_.Suggest(0, {kAway, kAway, 0.0}, -known_.LogPlaces());
+  const Hypothesis* found = DriveOn(240);
+  ASSERT_NE(found, nullptr) << hypotheses_.Description();
+  EXPECT_LT(found->T_world_odom.Translation().norm(), 30.0);
+}
 
 // Floors that look alike are told apart by a ride alone; then they stay so, though all of them are
 // found again.

@@ -19,6 +19,7 @@ struct LocalizationRun {
   std::string map;                ///< path as given
   double seconds = 0.0;
   std::vector<std::string> warnings;
+  std::string doubt;  ///< Localizer::Doubt() at the end
 };
 
 /// As summary.json and `--json` have it.
