@@ -14,34 +14,20 @@ constexpr std::size_t kBatchesAhead = 4;
 
 BagAhead::BagAhead(RosBag* bag) : bag_(*bag), connections_(bag->Connections()) { Start(); }
 
-BagAhead::~BagAhead() { Stop(); }
-
 void BagAhead::Start() {
   batch_ = {};
   batch_.truncated = bag_.Truncated();
   batch_.damaged = bag_.Damaged();
   batch_.first_damage = bag_.FirstDamage();
   next_ = 0;
-  error_ = nullptr;
-  batches_.emplace(kBatchesAhead);
-  thread_ = std::thread([this] {
-    try {
-      bool more = true;
-      while (more) {
-        Batch batch;
-        more = Fill(&batch);
-        if (!batches_->Push(std::move(batch))) break;
-      }
-    } catch (...) {
-      error_ = std::current_exception();
+  batches_.emplace(kBatchesAhead, [this](const RunAhead<Batch>::Sink& sink) {
+    bool more = true;
+    while (more) {
+      Batch batch;
+      more = Fill(&batch);
+      if (!sink(std::move(batch))) break;
     }
-    batches_->Close();
   });
-}
-
-void BagAhead::Stop() {
-  batches_->Close();
-  thread_.join();
 }
 
 bool BagAhead::Fill(Batch* batch) {
@@ -63,11 +49,8 @@ bool BagAhead::Fill(Batch* batch) {
 
 std::optional<BagMessage> BagAhead::Next() {
   while (next_ == batch_.messages.size()) {
-    std::optional<Batch> batch = batches_->Pop();
-    if (!batch) {
-      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-      return std::nullopt;
-    }
+    std::optional<Batch> batch = batches_->Next();
+    if (!batch) return std::nullopt;
     batch_ = std::move(*batch);
     next_ = 0;
   }
@@ -78,7 +61,7 @@ std::optional<BagMessage> BagAhead::Next() {
 }
 
 void BagAhead::Rewind() {
-  Stop();
+  batches_.reset();
   bag_.Rewind();
   Start();
 }

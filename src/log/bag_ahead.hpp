@@ -6,14 +6,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <map>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "bounded_queue.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 #include "ros_bag.hpp"
 
 namespace masked_mapper {
@@ -22,7 +20,6 @@ class BagAhead final : public RosBag {
  public:
   /// `bag` knows its connections, and is this one's alone as long as this lives.
   explicit BagAhead(RosBag* bag);
-  ~BagAhead() override;
 
   /// Throws what the bag threw.
   std::optional<BagMessage> Next() override;
@@ -50,17 +47,14 @@ class BagAhead final : public RosBag {
   };
 
   void Start();
-  void Stop();
   /// False at the end of the bag.
   bool Fill(Batch* batch);
 
   RosBag& bag_;
   std::map<std::uint32_t, BagConnection> connections_;
-  std::optional<BoundedQueue<Batch>> batches_;
-  std::exception_ptr error_;  ///< written before the queue is closed, read after
   Batch batch_;
   std::size_t next_ = 0;
-  std::thread thread_;
+  std::optional<RunAhead<Batch>> batches_;
 };
 
 }  // namespace masked_mapper

@@ -2,17 +2,15 @@
 #include "masked_mapper/log/cloud_source.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <thread>
 #include <utility>
 
 #include "bag_ahead.hpp"
 #include "bag_look.hpp"
 #include "bag_plan.hpp"
 #include "bag_sequence.hpp"
-#include "bounded_queue.hpp"
 #include "cloud_scanner.hpp"
 #include "masked_mapper/log/log_source.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "open_bag.hpp"
 
@@ -51,19 +49,12 @@ class CloudSource::Impl {
     }
     streams_ = std::make_unique<BagStreams>(plan_, *bag_);
     ahead_.emplace(bag_.get());
-    thread_ = std::thread([this] { Produce(); });
+    clouds_.emplace(kCloudsAhead, [this](const auto& sink) { Produce(sink); });
   }
-  ~Impl() {
-    clouds_.Close();
-    thread_.join();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
   std::optional<LevelledCloud> Next() {
-    std::optional<Made> made = clouds_.Pop();
+    std::optional<Made> made = clouds_->Next();
     if (!made) {
-      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
       progress_ = 1.0;
       return std::nullopt;
     }
@@ -79,15 +70,10 @@ class CloudSource::Impl {
     double progress = 0.0;
   };
 
-  void Produce() {
-    try {
-      while (std::optional<LevelledCloud> cloud = Make()) {
-        if (!clouds_.Push({std::move(*cloud), ahead_->Progress()})) break;
-      }
-    } catch (...) {
-      error_ = std::current_exception();
+  void Produce(const RunAhead<Made>::Sink& sink) {
+    while (std::optional<LevelledCloud> cloud = Make()) {
+      if (!sink({std::move(*cloud), ahead_->Progress()})) return;
     }
-    clouds_.Close();
   }
 
   std::optional<LevelledCloud> Make() {
@@ -125,10 +111,9 @@ class CloudSource::Impl {
   RobotMotion motion_;
   std::optional<BagAhead> ahead_;
   static constexpr std::size_t kCloudsAhead = 8;
-  BoundedQueue<Made> clouds_{kCloudsAhead};
-  std::exception_ptr error_;  ///< written before the queue is closed, read after
   double progress_ = 0.0;
-  std::thread thread_;  ///< makes the clouds, while whoever takes them is at work on the one before
+  /// Made while whoever takes them is at work on the one before.
+  std::optional<RunAhead<Made>> clouds_;
 };
 
 CloudSource::CloudSource(const std::vector<std::string>& paths, const LogOptions& options)

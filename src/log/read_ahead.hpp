@@ -4,15 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <exception>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <thread>
+#include <utility>
 #include <vector>
 
-#include "bounded_queue.hpp"
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 
 namespace masked_mapper {
 
@@ -26,13 +23,12 @@ struct ObservationBatch {
 
 class ReadAhead : public LogReader {
  public:
-  /// Takes a batch; false when nobody wants any more, and the producer should return.
-  using Sink = std::function<bool(ObservationBatch)>;
-  /// Runs in the reader's thread until the log is at its end. What it throws, Next() throws.
-  using Producer = std::function<void(const Sink&)>;
+  using Sink = RunAhead<ObservationBatch>::Sink;
+  /// Runs in the reader's thread until the log is at its end.
+  using Producer = RunAhead<ObservationBatch>::Producer;
 
-  ReadAhead(LogStatistics statistics_before, Producer producer);
-  ~ReadAhead() override;
+  ReadAhead(LogStatistics statistics_before, Producer producer)
+      : statistics_(std::move(statistics_before)), batches_(kBatchesAhead, std::move(producer)) {}
 
   std::optional<Observation> Next() override;
   const LogStatistics& Statistics() const override { return statistics_; }
@@ -40,13 +36,11 @@ class ReadAhead : public LogReader {
 
  private:
   static constexpr std::size_t kBatchesAhead = 8;
-  BoundedQueue<ObservationBatch> batches_{kBatchesAhead};
-  std::exception_ptr error_;  ///< written before the queue is closed, read after
   std::vector<Observation> batch_;
   std::size_t position_ = 0;
   LogStatistics statistics_;
   double progress_ = 0.0;
-  std::thread thread_;
+  RunAhead<ObservationBatch> batches_;
 };
 
 }  // namespace masked_mapper

@@ -7,39 +7,27 @@ namespace masked_mapper {
 namespace {
 
 constexpr std::size_t kTextBlock = 256 * 1024;
+constexpr std::size_t kBlocksAhead = 4;
 
 }  // namespace
 
-TextAhead::~TextAhead() {
-  blocks_.Close();
-  thread_.join();
-}
+TextAhead::TextAhead(const std::string& path)
+    : source_(path), blocks_(kBlocksAhead, [this](const auto& sink) { Read(sink); }) {}
 
-std::optional<TextBlock> TextAhead::Next() {
-  std::optional<TextBlock> block = blocks_.Pop();
-  if (!block && error_) std::rethrow_exception(error_);
-  return block;
-}
-
-void TextAhead::Read() {
-  try {
-    bool more = true;
-    while (more) {
-      TextBlock block;
-      block.text.resize(kTextBlock);
-      const std::size_t count = source_.Read(block.text.data(), block.text.size());
-      block.text.resize(count);
-      block.is_last = count < kTextBlock;
-      block.progress = block.is_last ? 1.0 : source_.Progress();
-      block.truncated = source_.Truncated();
-      block.trailing_bytes = source_.TrailingBytes();
-      more = !block.is_last;
-      more = blocks_.Push(std::move(block)) && more;
-    }
-  } catch (...) {
-    error_ = std::current_exception();
+void TextAhead::Read(const RunAhead<TextBlock>::Sink& sink) {
+  bool more = true;
+  while (more) {
+    TextBlock block;
+    block.text.resize(kTextBlock);
+    const std::size_t count = source_.Read(block.text.data(), block.text.size());
+    block.text.resize(count);
+    block.is_last = count < kTextBlock;
+    block.progress = block.is_last ? 1.0 : source_.Progress();
+    block.truncated = source_.Truncated();
+    block.trailing_bytes = source_.TrailingBytes();
+    more = !block.is_last;
+    more = sink(std::move(block)) && more;
   }
-  blocks_.Close();
 }
 
 }  // namespace masked_mapper

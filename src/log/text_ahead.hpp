@@ -4,12 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <optional>
 #include <string>
-#include <thread>
 
-#include "bounded_queue.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 #include "text_source.hpp"
 
 namespace masked_mapper {
@@ -25,21 +23,16 @@ struct TextBlock {
 class TextAhead {
  public:
   /// Throws InputError as TextSource does.
-  explicit TextAhead(const std::string& path) : source_(path), thread_([this] { Read(); }) {}
-  ~TextAhead();
+  explicit TextAhead(const std::string& path);
 
   /// Empty behind the last. Throws what the reading threw.
-  std::optional<TextBlock> Next();
+  std::optional<TextBlock> Next() { return blocks_.Next(); }
 
  private:
-  static constexpr std::size_t kBlocksAhead = 4;
-
-  void Read();
+  void Read(const RunAhead<TextBlock>::Sink& sink);
 
   TextSource source_;
-  BoundedQueue<TextBlock> blocks_{kBlocksAhead};
-  std::exception_ptr error_;  ///< written before the queue is closed, read after
-  std::thread thread_;
+  RunAhead<TextBlock> blocks_;
 };
 
 }  // namespace masked_mapper
