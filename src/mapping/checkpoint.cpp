@@ -207,15 +207,33 @@ LogSurvey UnpackSurvey(const std::string& bytes) {
 }
 
 template <class Archive>
+void DriveMotion::SerializeState(Archive& archive) {
+  archive(motion_, level_, in_transit_, on_stairs_);
+}
+
+std::string DriveMotion::SaveState() {
+  StateWriter writer;
+  SerializeState(writer);
+  return writer.Take();
+}
+
+void DriveMotion::RestoreState(const std::string& bytes) {
+  StateReader reader(bytes);
+  SerializeState(reader);
+  reader.RequireEnd();
+}
+
+template <class Archive>
 void MaskedMapper::SerializeState(Archive& archive) {
-  archive(motion_, result_.closures, closer_, last_scan_node_, in_transit_, on_stairs_,
+  archive(result_.closures, closer_, T_odom_robot_, T_node_robot_, last_scan_node_, in_transit_,
           travelled_since_kept_m_);
 }
 
-std::string MaskedMapper::SaveState() {
+std::string MaskedMapper::SaveState(std::string motion) {
   StateWriter writer;
   WriteGraph(result_.graph, writer);
   SerializeState(writer);
+  writer(motion);
   return writer.Take();
 }
 
@@ -225,7 +243,10 @@ void MaskedMapper::RestoreState(const std::string& bytes, GrownParts parts) {
   result_.trajectory = std::move(parts.trajectory);
   result_.kept_scans = std::move(parts.kept_scans);
   SerializeState(reader);
+  std::string motion;
+  reader(motion);
   reader.RequireEnd();
+  motion_.RestoreState(motion);
   CheckMap(result_);
   const std::size_t nodes = result_.graph.nodes().size();
   const bool holds = result_.graph.floors().size() == floors_.levels.size() &&
@@ -233,7 +254,7 @@ void MaskedMapper::RestoreState(const std::string& bytes, GrownParts parts) {
   if (!holds) StateReader::Refuse("a mapper that does not hold together");
 }
 
-// What ObserveScan and the functions below it tell the mask, and nothing else of them.
+// What Observe and the functions below it tell the mask, and nothing else of them.
 void MaskedMapper::RememberScan(const LaserScan& scan) {
   const std::vector<TrajectoryPose>& trajectory = result_.trajectory;
   const TrajectoryPose& pose = trajectory.at(remembered_scans_);

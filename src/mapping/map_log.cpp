@@ -17,6 +17,7 @@
 #include "masked_mapper/sensor/state_archive.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
+#include "moved_scans.hpp"
 #include "wheels_by_closures.hpp"
 
 namespace masked_mapper {
@@ -67,9 +68,9 @@ std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStat
 }
 
 // What the checkpoint keeps beside the mapper: the survey, so that the log is not surveyed again.
-std::string PackState(const LogSurvey& survey, MaskedMapper& mapper) {
+std::string PackState(const LogSurvey& survey, std::string motion, MaskedMapper& mapper) {
   std::string survey_bytes = PackSurvey(survey);
-  std::string mapper_bytes = mapper.SaveState();
+  std::string mapper_bytes = mapper.SaveState(std::move(motion));
   StateWriter writer;
   writer(survey_bytes, mapper_bytes);
   return writer.Take();
@@ -194,18 +195,35 @@ class LogDrive {
   }
 
   void DriveThrough() {
-    while (const std::optional<Observation> observation = Next()) {
-      mapper_->Observe(*observation);
-      if (!std::holds_alternative<LaserScan>(*observation)) continue;
+    MovedScans scans(*log_, mapper_->motion(), observations_, options_.threads);
+    while (std::optional<LoggedScan> scan = scans.Next()) {
+      mapper_->Observe(scan->moved);
       ++scans_;
       try {
-        progress_.Progress(log_->Progress(), scans_);
+        progress_.Progress(scan->progress, scans_);
       } catch (...) {  // an interrupt: what is done is kept, unless it is next to nothing
-        if (has_saved_ || IsDue()) SaveCheckpoint();
+        if (has_saved_ || IsDue()) SaveCheckpointSoon(scans, std::move(*scan));
         throw;
       }
-      if (IsDue()) SaveCheckpoint();
+      if (!IsDue()) continue;
+      scans.AskForState(*scan);
+      SaveCheckpoint(*scan);
     }
+    read_seconds_ += scans.read_seconds();
+  }
+
+  // Goes on until the motion has said its state.
+  void SaveCheckpointSoon(MovedScans& scans, LoggedScan last) {
+    scans.AskForState(last);
+    while (!last.motion) {
+      if (std::optional<LoggedScan> next = scans.Next()) {
+        last = std::move(*next);
+        mapper_->Observe(last.moved);
+      } else {
+        scans.AskForState(last);
+      }
+    }
+    SaveCheckpoint(last);
   }
 
   std::optional<Observation> Next() {
@@ -231,12 +249,14 @@ class LogDrive {
 
   bool IsDue() { return checkpoints_ != nullptr && checkpoints_->IsDue(); }
 
-  void SaveCheckpoint() {
-    if (checkpoints_ == nullptr) return;
+  /// As of this scan, unless the motion has not said its state there.
+  void SaveCheckpoint(const LoggedScan& last) {
+    if (checkpoints_ == nullptr || !last.motion) return;
     try {
       has_saved_ = true;
-      checkpoints_->Save({observations_, log_->Progress(), PackState(survey_, *mapper_)},
-                         mapper_->result());
+      checkpoints_->Save(
+          {last.observations, last.progress, PackState(survey_, *last.motion, *mapper_)},
+          mapper_->result());
     } catch (const std::runtime_error& error) {
       progress_.Warn(std::string(error.what()) + "; going on without checkpoints");
       checkpoints_ = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 1, to be read beside the paper: ObserveScan is its loop, CloseLoops its body.
+// Algorithm 1, to be read beside the paper: Observe is its loop, CloseLoops its body.
 #include "masked_mapper.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ MaskedMapper::MaskedMapper(const std::string& mask, const MappingOptions& option
                            const FloorTimeline& floors)
     : options_(Settled(options)),
       floors_(floors),
-      motion_(options.motion),
+      motion_(options_.motion, options_.nodes.cab_m, floors),
       mask_(MakeMask(mask, options.masks)),
       closer_(options_.closures, result_) {
   const std::vector<std::string> names = FloorNames(floors.levels);
@@ -51,12 +51,7 @@ MaskedMapper::MaskedMapper(const std::string& mask, const MappingOptions& option
 }
 
 void MaskedMapper::Observe(const Observation& observation) {
-  if (const auto* odometry = std::get_if<OdometryReading>(&observation)) {
-    const StageTimer timer(result_.seconds.motion);
-    motion_.Observe(*odometry);
-  } else if (const auto* scan = std::get_if<LaserScan>(&observation)) {
-    ObserveScan(*scan);
-  }
+  if (const std::optional<MovedScan> moved = motion_.Observe(observation)) Observe(*moved);
 }
 
 // Where wheels did not straighten a scan, the step that it made does, which is better known now
@@ -69,13 +64,11 @@ LaserScan MaskedMapper::StraightenedAt(const LaserScan& scan, std::size_t pose,
                              scan.stamp - before.stamp);
 }
 
-void MaskedMapper::ObserveScan(const LaserScan& bent) {
-  const FloorInterval& interval = floors_.At(bent.stamp);
-  {
-    const StageTimer timer(result_.seconds.motion);
-    motion_.Observe(bent, interval.in_transit != in_transit_);
-  }
-  const LaserScan scan = StraightenedAt(bent, result_.trajectory.size(), motion_.T_odom_robot());
+void MaskedMapper::Observe(const MovedScan& moved) {
+  const FloorInterval& interval = moved.interval;
+  T_odom_robot_ = moved.T_odom_robot;
+  T_node_robot_ = T_node_robot_ * moved.T_last_robot;
+  const LaserScan scan = StraightenedAt(moved.scan, result_.trajectory.size(), T_odom_robot_);
   const auto floor = static_cast<FloorId>(interval.level);
   const bool is_first = result_.graph.nodes().empty();
   if (is_first) {
@@ -85,11 +78,10 @@ void MaskedMapper::ObserveScan(const LaserScan& bent) {
   }
   if (!in_transit_) {
     const StageTimer timer(result_.seconds.mask);
-    mask_->Observe({scan, motion_.T_odom_robot()});
+    mask_->Observe({scan, T_odom_robot_});
   }
-  const Pose2& T_odom_robot = motion_.T_odom_robot();
   const auto distance_from = [&](NodeId node) {
-    return Distance(result_.graph.node(node).T_odom_robot, T_odom_robot);
+    return Distance(result_.graph.node(node).T_odom_robot, T_odom_robot_);
   };
   std::optional<NodeId> new_scan_node;
   if (is_first) {
@@ -110,7 +102,7 @@ void MaskedMapper::ObserveScan(const LaserScan& bent) {
 }
 
 // Exit on the old floor, entry on the new one, both odometry-only (III-B): what lies between them
-// is one edge, and the mask starts afresh.
+// is one edge, and the mask starts afresh. DriveMotion does the same to the motion.
 void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
   const FloorId old_floor = result_.graph.nodes().back().floor;
   const auto floor = static_cast<FloorId>(interval.level);
@@ -118,17 +110,12 @@ void MaskedMapper::ChangeFloor(const FloorInterval& interval, double stamp) {
   if (!in_transit_ && (interval.in_transit || other_floor)) {
     AddNode(stamp, old_floor, EdgeKind::kOdometry);
     in_transit_ = true;
-    // On stairs the scene changes step by step, and its far walls hold the way along a flight; a
-    // cab's door opens on another floor at once.
-    on_stairs_ = interval.in_transit && interval.travelled_m > options_.nodes.cab_m;
-    if (!on_stairs_) motion_.EnterTransit();
   }
   if (in_transit_ && !interval.in_transit) {
     AddNode(stamp, floor, other_floor ? EdgeKind::kFloorChange : EdgeKind::kOdometry);
     in_transit_ = false;
     last_scan_node_.reset();
     mask_->Restart();
-    if (!on_stairs_) motion_.LeaveTransit();
   }
 }
 
@@ -137,18 +124,18 @@ NodeId MaskedMapper::AddNode(double stamp, FloorId floor, EdgeKind kind, KeptSca
   Node node;
   node.stamp = stamp;
   node.floor = floor;
-  node.T_odom_robot = motion_.T_odom_robot();
+  node.T_odom_robot = T_odom_robot_;
   node.scan = scan;
   const bool has_scan = node.HasScan();
   const bool is_first = graph.nodes().empty();
   if (!is_first) {
-    node.T_world_robot = graph.nodes().back().T_world_robot * motion_.T_node_robot().mean;
+    node.T_world_robot = graph.nodes().back().T_world_robot * T_node_robot_.mean;
   }
   const NodeId id = graph.AddNode(node);
   if (!is_first) {
-    graph.AddEdge({id - 1, id, motion_.T_node_robot(), kind});
+    graph.AddEdge({id - 1, id, T_node_robot_, kind});
   }
-  motion_.StartNode();
+  T_node_robot_ = UncertainPose2{};
   if (has_scan) {
     last_scan_node_ = id;
     mask_->OnNode();
@@ -174,9 +161,8 @@ KeptScanId MaskedMapper::Keep(const LaserScan& scan) {
 }
 
 void MaskedMapper::RecordPose(const LaserScan& scan, const FloorInterval& interval) {
-  const Pose2& T_odom_robot = motion_.T_odom_robot();
   if (!result_.trajectory.empty()) {
-    travelled_since_kept_m_ += Distance(result_.trajectory.back().T_odom_robot, T_odom_robot);
+    travelled_since_kept_m_ += Distance(result_.trajectory.back().T_odom_robot, T_odom_robot_);
   }
   // Beside the scans of nodes, those that render the map, thinned by travel and turn.
   if (!IsNextKept() && IsDueToBeKept(interval)) Keep(scan);
@@ -187,7 +173,7 @@ void MaskedMapper::RecordPose(const LaserScan& scan, const FloorInterval& interv
   pose.node_before = static_cast<NodeId>(result_.graph.nodes().size() - 1);
   pose.floor = static_cast<FloorId>(interval.level);
   pose.in_transit = interval.in_transit;
-  pose.T_odom_robot = T_odom_robot;
+  pose.T_odom_robot = T_odom_robot_;
   result_.trajectory.push_back(pose);
 }
 
@@ -202,7 +188,7 @@ bool MaskedMapper::IsDueToBeKept(const FloorInterval& interval) const {
   if (result_.kept_scans.empty()) return true;
   const std::size_t last = result_.kept_scans.back().trajectory_index;
   const double turned =
-      WrapAngle(motion_.T_odom_robot().theta - result_.trajectory[last].T_odom_robot.theta);
+      WrapAngle(T_odom_robot_.theta - result_.trajectory[last].T_odom_robot.theta);
   return std::abs(turned) >= DegToRad(options_.nodes.kept_scan_angle_deg) ||
          travelled_since_kept_m_ >= options_.nodes.kept_scan_distance_m;
 }
@@ -210,6 +196,7 @@ bool MaskedMapper::IsDueToBeKept(const FloorInterval& interval) const {
 BuildingMap MaskedMapper::Finish() {
   closer_.Finish();
   BendTrajectory(result_.graph, result_.trajectory);
+  result_.seconds.motion += motion_.seconds();
   return std::move(result_);
 }
 

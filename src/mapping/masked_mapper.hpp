@@ -10,10 +10,10 @@
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
+#include "drive_motion.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
-#include "masked_mapper/motion/motion_estimator.hpp"
 
 namespace masked_mapper {
 
@@ -26,6 +26,11 @@ class MaskedMapper {
   /// Observations in order of stamps.
   void Observe(const Observation& observation);
 
+  // The same in two parts. A thread may run ahead with the first of them: the map is what is made
+  // of the scans, in their order.
+  DriveMotion& motion() { return motion_; }
+  void Observe(const MovedScan& moved);
+
   /// Ends the map: every scan gets its pose. The mapper is spent afterwards.
   BuildingMap Finish();
 
@@ -36,7 +41,9 @@ class MaskedMapper {
   // For checkpoints; all of this stands in checkpoint.cpp.
   /// Everything that the observations so far left behind, but for the parts that only grow and for
   /// the mask's memory.
-  std::string SaveState();
+  std::string SaveState() { return SaveState(motion_.SaveState()); }
+  /// The same, where motion has run ahead; its state is that behind the scan observed last.
+  std::string SaveState(std::string motion);
   /// To a mapper made with the same mask, options and floors, before any observation. Throws
   /// StateError.
   void RestoreState(const std::string& bytes, GrownParts parts);
@@ -46,7 +53,6 @@ class MaskedMapper {
  private:
   template <class Archive>
   void SerializeState(Archive& archive);
-  void ObserveScan(const LaserScan& bent);
   LaserScan StraightenedAt(const LaserScan& scan, std::size_t pose,
                            const Pose2& T_odom_robot) const;
   void ChangeFloor(const FloorInterval& interval, double stamp);
@@ -59,14 +65,15 @@ class MaskedMapper {
 
   MappingOptions options_;
   const FloorTimeline& floors_;
-  MotionEstimator motion_;
+  DriveMotion motion_;
   std::unique_ptr<Mask> mask_;
   BuildingMap result_;
   LoopCloser closer_;  ///< works on result_
 
+  Pose2 T_odom_robot_;                    ///< at the scan observed last, as T_node_robot_
+  UncertainPose2 T_node_robot_;           ///< motion since the last node
   std::optional<NodeId> last_scan_node_;  ///< on this floor since it was entered
   bool in_transit_ = false;
-  bool on_stairs_ = false;  ///< the transit that runs, or the last
   double travelled_since_kept_m_ = 0.0;
   std::size_t remembered_scans_ = 0;  ///< by RememberScan
 };

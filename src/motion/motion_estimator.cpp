@@ -38,6 +38,7 @@ class MotionEstimator::Impl {
   void LeaveTransit();
 
   const Pose2& T_odom_robot() const { return T_odom_robot_; }
+  const UncertainPose2& last_step() const { return last_step_; }
   const UncertainPose2& T_node_robot() const { return T_node_robot_; }
 
   template <class Archive>
@@ -221,6 +222,7 @@ void MotionEstimator::EnterTransit() { impl_->EnterTransit(); }
 void MotionEstimator::LeaveTransit() { impl_->LeaveTransit(); }
 
 const Pose2& MotionEstimator::T_odom_robot() const { return impl_->T_odom_robot(); }
+const UncertainPose2& MotionEstimator::last_step() const { return impl_->last_step(); }
 const UncertainPose2& MotionEstimator::T_node_robot() const { return impl_->T_node_robot(); }
 
 void MotionEstimator::Serialize(StateWriter& archive) { impl_->Serialize(archive); }

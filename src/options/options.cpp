@@ -10,6 +10,7 @@ void SettleThreads(Options& options) {
   if (options.threads == 0) {
     options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
+  options.mapping.threads = options.threads;
   options.mapping.closures.matcher.threads = options.threads;
   options.grid.threads = options.threads;
 }

@@ -87,6 +87,21 @@ TEST_F(CheckpointFileTest, GoesOnToTheSameMap) {
   EXPECT_TRUE(SameMap(whole, Map(true)));
 }
 
+// The front end is then ahead of the graph when a checkpoint is due, and when the work ends.
+TEST_F(CheckpointFileTest, GoesOnToTheSameMapAlsoWhereStagesOverlap) {
+  const BuildingMap whole = Map(false);
+  CheckpointFile(folder_ / "out", origin_, 1.0, false).Remove();
+  origin_.options.mapping.threads = 2;
+  EXPECT_TRUE(SameMap(whole, Map(false)));
+  CheckpointFile(folder_ / "out", origin_, 1.0, false).Remove();
+  for (const std::uint64_t scan : {std::uint64_t{3}, std::uint64_t{300}, drive_.scans.size()}) {
+    EXPECT_THROW(Map(false, scan), std::runtime_error);
+    EXPECT_TRUE(CheckpointFile::Exists(folder_ / "out"));
+    EXPECT_TRUE(SameMap(whole, Map(true))) << scan;
+    CheckpointFile(folder_ / "out", origin_, 1.0, false).Remove();
+  }
+}
+
 TEST_F(CheckpointFileTest, WithoutResumeItStartsAfresh) {
   EXPECT_THROW(Map(false, 200), std::runtime_error);
   origin_.mask = "always";

@@ -9,6 +9,7 @@
 
 #include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
+#include "mapping/same_map.hpp"
 #include "masked_mapper/log/log_writer.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
@@ -52,6 +53,19 @@ TEST(MapLog, ByWheelsAloneClosuresTellHowGoodTheyAre) {
   MaskedMapper mapper("always", options, floors);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
   EXPECT_GT(LargestError(drive, mapper.Finish()), 0.2) << "m, with the wheels as they are";
+}
+
+TEST(MapLog, WhatOverlapsChangesNothing) {
+  const std::string path = LogOf(RingDrive(1.6, 0.2), "threads.log.gz");
+  ProgressSink silent;
+  for (const MotionSource source : {MotionSource::kFused, MotionSource::kOdometry}) {
+    MappingOptions options;
+    options.motion.source = source;
+    const BuildingMap alone = MapLog(path, "always", options, silent);
+    options.threads = options.closures.matcher.threads = 3;
+    EXPECT_TRUE(SameMap(alone, MapLog(path, "always", options, silent)));
+    EXPECT_GE(alone.closures.size(), 2U);
+  }
 }
 
 TEST(MapLog, ABagOfAFullCircleScannerIsMappedRight) {

@@ -28,6 +28,7 @@ struct MappingOptions {
   MaskOptions masks;
   LoopClosureOptions closures;
   FloorJoinOptions floor_joins;
+  int threads = 1;  ///< above 1 what can overlap does; never changes the result
 };
 
 }  // namespace masked_mapper

@@ -36,6 +36,8 @@ class MotionEstimator {
 
   /// Pose at the scan observed last, along the path; frame `odom` is the robot's first pose.
   const Pose2& T_odom_robot() const;
+  /// Motion to the scan observed last since the one before, with covariance in that one's frame.
+  const UncertainPose2& last_step() const;
   /// Motion since the last node, with covariance in the node's frame.
   const UncertainPose2& T_node_robot() const;
 
