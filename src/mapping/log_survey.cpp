@@ -3,13 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
+#include "masked_mapper/log/work_behind.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
+#include "masked_mapper/motion/mount_check.hpp"
+#include "masked_mapper/motion/standstill_check.hpp"
 #include "masked_mapper/motion/sweep_check.hpp"
 #include "masked_mapper/motion/wheel_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -39,6 +44,53 @@ std::vector<TimeSpan> SpansOf(const std::vector<FalseRest>& rests) {
   return spans;
 }
 
+/// Observations for several, each of which works through them in a thread of its own. They are
+/// handed over many at once, since it takes time to wake a thread.
+class Listeners {
+ public:
+  explicit Listeners(bool in_threads) : in_threads_(in_threads) {}
+
+  template <typename Check>
+  void Add(Check* check) {
+    const auto observe = [check](const Observation& observation) {
+      if (const auto* reading = std::get_if<OdometryReading>(&observation))
+        check->Observe(*reading);
+      if (const auto* scan = std::get_if<LaserScan>(&observation)) check->Observe(*scan);
+    };
+    behind_.push_back(std::make_unique<WorkBehind<Batch>>(
+        kMostWaiting, in_threads_, [observe](const Batch& batch) {
+          for (const Observation& observation : *batch) observe(observation);
+        }));
+  }
+
+  void Observe(Observation observation) {
+    if (!batch_) batch_ = std::make_shared<std::vector<Observation>>();
+    batch_->push_back(std::move(observation));
+    if (!in_threads_ || batch_->size() == kHandedOver) HandOver();
+  }
+
+  /// Waits until all have heard all. Throws what they threw.
+  void Finish() {
+    HandOver();
+    for (const auto& listener : behind_) listener->Finish();
+  }
+
+ private:
+  using Batch = std::shared_ptr<std::vector<Observation>>;
+  static constexpr std::size_t kHandedOver = 64;
+  static constexpr std::size_t kMostWaiting = 32;
+
+  void HandOver() {
+    if (!batch_) return;
+    for (const auto& listener : behind_) listener->Add(batch_);
+    batch_.reset();
+  }
+
+  bool in_threads_;
+  Batch batch_;
+  std::vector<std::unique_ptr<WorkBehind<Batch>>> behind_;
+};
+
 /// One pass through the log, scans with their beams: all that is to be known of it before it is
 /// mapped.
 class Surveyor {
@@ -53,19 +105,24 @@ class Surveyor {
         unbroken_(options.motion, !mending.left_out.empty()),
         turns_left_out_(mending.turns_left_out),
         asks_wheels_(options.motion.source == MotionSource::kAuto ||
-                     options.motion.source == MotionSource::kFused) {
+                     options.motion.source == MotionSource::kFused),
+        listeners_(options.threads > 1) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
+    if (asks_wheels_) listeners_.Add(&standstill_);
+    listeners_.Add(&wheels_);
   }
 
-  void Observe(const Observation& observation) {
+  void Observe(Observation observation) {
     unbroken_.Follow(observation, [&](const Observation& followed) { floors_.Observe(followed); });
     if (const auto* reading = std::get_if<OdometryReading>(&observation)) {
       NoteWay(*reading);
-      if (asks_wheels_) standstill_.Observe(*reading);
-      wheels_.Observe(*reading);
+      listeners_.Observe(*reading);
     }
-    if (const auto* scan = std::get_if<LaserScan>(&observation)) ObserveScan(*scan);
+    if (auto* scan = std::get_if<LaserScan>(&observation)) ObserveScan(std::move(*scan));
   }
+
+  /// Behind the last observation.
+  void EndPass() { listeners_.Finish(); }
 
   /// What is to be mended of the wheels, each with its finding.
   WheelMending Wheels() {
@@ -116,32 +173,32 @@ class Surveyor {
     return *report_;
   }
 
-  void ObserveScan(const LaserScan& scan) {
+  void ObserveScan(LaserScan scan) {
     if (survey_.scans++ == 0) {
       log_.start = scan.stamp;
       T_robot_laser_ = scan.T_robot_laser;
     }
     log_.end = scan.stamp;
     sweep_.Observe(scan);
-    AskOfWheels(scan.beam_time == 0.0 ? scan : Timed(scan, sweep_.Stated()));
     if (stamp_before_) periods_.push_back(static_cast<float>(scan.stamp - *stamp_before_));
     stamp_before_ = scan.stamp;
-    if (!scan.T_odom_robot) return;
-    NoteWay({scan.stamp, *scan.T_odom_robot});
+    if (scan.T_odom_robot) NoteStep(scan.stamp, *scan.T_odom_robot);
+    if (scan.beam_time != 0.0) scan = Timed(scan, sweep_.Stated());
+    listeners_.Observe(std::move(scan));
+  }
+
+  /// From scan to scan.
+  void NoteStep(double stamp, const Pose2& T_odom_robot) {
+    NoteWay({stamp, T_odom_robot});
     if (T_odom_before_) {
-      const Pose2 step = Between(*T_odom_before_, *scan.T_odom_robot);
+      const Pose2 step = Between(*T_odom_before_, T_odom_robot);
       const double travel = std::hypot(step.x, step.y);
       if (travel > 0.01 || std::abs(step.theta) > 0.01) {
         travels_.push_back(static_cast<float>(travel));
         turns_.push_back(static_cast<float>(std::abs(step.theta)));
       }
     }
-    T_odom_before_ = scan.T_odom_robot;
-  }
-
-  void AskOfWheels(const LaserScan& scan) {
-    if (asks_wheels_) standstill_.Observe(scan);
-    wheels_.Observe(scan);
+    T_odom_before_ = T_odom_robot;
   }
 
   void SettleSweep() {
@@ -177,6 +234,7 @@ class Surveyor {
   std::vector<float> travels_;  ///< m, from scan to scan
   std::vector<float> turns_;    ///< rad
   std::vector<float> periods_;  ///< s
+  Listeners listeners_;         ///< the last, since their threads use the others
 };
 
 }  // namespace
@@ -190,9 +248,10 @@ LogSurvey SurveyLog(LogSource& source, const MappingOptions& options) {
   while (true) {
     const std::unique_ptr<LogReader> log = source.Read();
     Surveyor surveyor(options, labels, wheels.mending);
-    while (const std::optional<Observation> observation = log->Next()) {
-      surveyor.Observe(*observation);
+    while (std::optional<Observation> observation = log->Next()) {
+      surveyor.Observe(std::move(*observation));
     }
+    surveyor.EndPass();
     if (source.Reconsider()) {
       reconsidered = true;
       continue;
