@@ -8,13 +8,13 @@
 
 namespace masked_mapper {
 
-std::optional<MovedScan> DriveMotion::Observe(Observation observation) {
+std::optional<MovedScan> DriveMotion::Observe(Observation observation, const FacedPoints* points) {
   const StageTimer timer(seconds_);
   if (const auto* odometry = std::get_if<OdometryReading>(&observation)) motion_.Observe(*odometry);
   auto* scan = std::get_if<LaserScan>(&observation);
   if (scan == nullptr) return std::nullopt;
   const FloorInterval& interval = floors_.At(scan->stamp);
-  motion_.Observe(*scan, interval.in_transit != in_transit_);
+  motion_.Observe(*scan, interval.in_transit != in_transit_, points);
   MovedScan moved{std::move(*scan), motion_.last_step(), motion_.T_odom_robot(), interval};
   ChangeFloor(interval);
   return moved;

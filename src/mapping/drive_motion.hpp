@@ -25,10 +25,16 @@ class DriveMotion {
  public:
   /// `cab_m`: travel in transit above which it is no cab. `floors` outlives this.
   DriveMotion(const MotionOptions& options, double cab_m, const FloorTimeline& floors)
-      : cab_m_(cab_m), floors_(floors), motion_(options) {}
+      : uses_points_(options.source != MotionSource::kOdometry),
+        cab_m_(cab_m),
+        floors_(floors),
+        motion_(options) {}
 
-  /// Observations in order of stamps.
-  std::optional<MovedScan> Observe(Observation observation);
+  /// Whether points of scans that somebody has made already are of use.
+  bool uses_points() const { return uses_points_; }
+
+  /// Observations in order of stamps. `points`: of a scan, where somebody has made them already.
+  std::optional<MovedScan> Observe(Observation observation, const FacedPoints* points = nullptr);
 
   /// s, spent on it.
   double seconds() const { return seconds_; }
@@ -43,6 +49,7 @@ class DriveMotion {
   void SerializeState(Archive& archive);
   void ChangeFloor(const FloorInterval& interval);
 
+  bool uses_points_;
   double cab_m_;
   const FloorTimeline& floors_;
   MotionEstimator motion_;

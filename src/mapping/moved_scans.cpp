@@ -2,39 +2,56 @@
 #include "moved_scans.hpp"
 
 #include <utility>
+#include <variant>
 
 #include "masked_mapper/map/stage_timer.hpp"
 
 namespace masked_mapper {
 namespace {
 
-// Scans are handed over some at once, since it takes time to wake a thread. So many in all bridge
-// the time in which loops are closed at one node.
-constexpr std::size_t kHandedOver = 16;
-constexpr std::size_t kMostAhead = 32;  // times that
+constexpr std::size_t kAtOnce = 16;
+constexpr std::size_t kMostPrepared = 8;  // times that
+constexpr std::size_t kMostMoved = 32;    // the same: they bridge the closing of loops at one node
 
 }  // namespace
 
 MovedScans::MovedScans(LogReader& log, DriveMotion& motion, std::uint64_t observations, int threads)
     : log_(log), motion_(motion), observations_(observations) {
-  if (threads > 1) ahead_.emplace(kMostAhead, [this](const auto& sink) { MakeAhead(sink); });
+  if (threads <= 1) return;
+  prepared_.emplace(
+      kMostPrepared,
+      [this](const auto& sink) {
+        while (std::optional<Prepared> prepared = Prepare()) {
+          const auto* scan = std::get_if<LaserScan>(&prepared->observation);
+          // A bent scan has other points once it is straightened.
+          if (motion_.uses_points() && scan != nullptr && scan->beam_time == 0.0) {
+            prepared->points.emplace(*PointsInRobot(*scan));
+          }
+          if (!sink(std::move(*prepared))) return;
+        }
+      },
+      kAtOnce);
+  moved_.emplace(
+      kMostMoved,
+      [this](const auto& sink) {
+        while (std::optional<LoggedScan> scan = Move()) {
+          if (is_asked_for_state_.exchange(false)) scan->motion = motion_.SaveState();
+          if (!sink(std::move(*scan))) return;
+        }
+      },
+      kAtOnce);
 }
 
 std::optional<LoggedScan> MovedScans::Next() {
-  if (!ahead_) return Make();
-  while (next_ == taken_.size()) {
-    std::optional<Scans> more = ahead_->Next();
-    is_over_ = !more;
-    if (is_over_) return std::nullopt;
-    taken_ = std::move(*more);
-    next_ = 0;
-  }
-  return std::move(taken_[next_++]);
+  if (!moved_) return Move();
+  std::optional<LoggedScan> scan = moved_->Next();
+  is_over_ = !scan;
+  return scan;
 }
 
 void MovedScans::AskForState(LoggedScan& last) {
   if (last.motion) return;
-  if (ahead_ && !is_over_) {
+  if (moved_ && !is_over_) {
     is_asked_for_state_ = true;
     return;
   }
@@ -43,35 +60,21 @@ void MovedScans::AskForState(LoggedScan& last) {
   last.motion = motion_.SaveState();
 }
 
-std::optional<LoggedScan> MovedScans::Make() {
-  while (true) {
-    std::optional<Observation> observation;
-    {
-      const StageTimer timer(read_seconds_);
-      observation = log_.Next();
-    }
-    if (!observation) return std::nullopt;
-    ++observations_;
-    std::optional<MovedScan> moved = motion_.Observe(std::move(*observation));
-    if (moved) return LoggedScan{std::move(*moved), observations_, log_.Progress(), {}};
-  }
+std::optional<MovedScans::Prepared> MovedScans::Prepare() {
+  const StageTimer timer(read_seconds_);
+  std::optional<Observation> observation = log_.Next();
+  if (!observation) return std::nullopt;
+  return Prepared{std::move(*observation), {}, log_.Progress()};
 }
 
-void MovedScans::MakeAhead(const RunAhead<Scans>::Sink& sink) {
-  Scans made;
-  try {
-    while (std::optional<LoggedScan> scan = Make()) {
-      if (is_asked_for_state_.exchange(false)) scan->motion = motion_.SaveState();
-      const bool is_waited_for = scan->motion.has_value();
-      made.push_back(std::move(*scan));
-      if (!is_waited_for && made.size() < kHandedOver) continue;
-      if (!sink(std::exchange(made, {}))) return;
-    }
-  } catch (...) {
-    sink(std::move(made));  // what was made before comes first
-    throw;
+std::optional<LoggedScan> MovedScans::Move() {
+  while (std::optional<Prepared> next = prepared_ ? prepared_->Next() : Prepare()) {
+    ++observations_;
+    std::optional<MovedScan> moved =
+        motion_.Observe(std::move(next->observation), next->points ? &*next->points : nullptr);
+    if (moved) return LoggedScan{std::move(*moved), observations_, next->progress, {}};
   }
-  sink(std::move(made));
+  return std::nullopt;
 }
 
 }  // namespace masked_mapper

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The scans of a log with the robot's motion, in order. With more than one thread they are made
-// ahead of whoever takes them, since nothing of what is done with them comes back to the motion;
-// they are the same.
+// ahead of whoever takes them, since nothing of what is done with them comes back to the motion,
+// and their points ahead of the motion; they are the same.
 #pragma once
 
 #include <atomic>
@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "drive_motion.hpp"
 #include "masked_mapper/log/log_reader.hpp"
 #include "masked_mapper/log/run_ahead.hpp"
-#include "drive_motion.hpp"
+#include "masked_mapper/scan_matching/local_map.hpp"
 
 namespace masked_mapper {
 
@@ -43,10 +44,15 @@ class MovedScans {
   double read_seconds() const { return read_seconds_; }
 
  private:
-  using Scans = std::vector<LoggedScan>;
+  /// An observation, and what can be made of it before its motion is known.
+  struct Prepared {
+    Observation observation;
+    std::optional<FacedPoints> points;
+    double progress = 0.0;
+  };
 
-  std::optional<LoggedScan> Make();
-  void MakeAhead(const RunAhead<Scans>::Sink& sink);
+  std::optional<Prepared> Prepare();
+  std::optional<LoggedScan> Move();
 
   LogReader& log_;
   DriveMotion& motion_;
@@ -54,9 +60,9 @@ class MovedScans {
   double read_seconds_ = 0.0;
   std::atomic<bool> is_asked_for_state_ = false;
   bool is_over_ = false;
-  Scans taken_;  ///< some of them, made ahead
-  std::size_t next_ = 0;
-  std::optional<RunAhead<Scans>> ahead_;  ///< the last, since its thread uses the others
+  // The last, since their threads use the others. The second takes from the first.
+  std::optional<RunAhead<Prepared>> prepared_;
+  std::optional<RunAhead<LoggedScan>> moved_;
 };
 
 }  // namespace masked_mapper

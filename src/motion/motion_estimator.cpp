@@ -32,7 +32,7 @@ class MotionEstimator::Impl {
   explicit Impl(const MotionOptions& options);
 
   void Observe(const OdometryReading& reading);
-  void Observe(const LaserScan& scan, bool must_match);
+  void Observe(const LaserScan& scan, bool must_match, const FacedPoints* points = nullptr);
   void StartNode() { T_node_robot_ = UncertainPose2{}; }
   void EnterTransit();
   void LeaveTransit();
@@ -126,7 +126,8 @@ bool MotionEstimator::Impl::HearsWheels(const LaserScan& scan) {
   return hears && options_.source != MotionSource::kScans;
 }
 
-void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match) {
+void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match,
+                                    const FacedPoints* points) {
   if (scan.beam_time != 0.0) {
     // Of the motion during the sweep the step before is the nearest that is known.
     Observe(StraightenedBySteps(scan, last_step_.mean, last_step_s_), must_match);
@@ -154,7 +155,7 @@ void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match) {
         (has_wheels && (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
                         std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg)));
     if (elapsed > kGap && went_on) RestartScans();
-    step = scan_odometry_.Observe(scan, step, must_match);
+    step = scan_odometry_.Observe(scan, step, must_match, points);
     if (has_turns) LearnWheelNoise(by_wheels, step.mean);
     NoteAdvance(wheel_travel_m, step.mean.x);
   }
@@ -214,8 +215,8 @@ MotionEstimator::MotionEstimator(MotionEstimator&&) noexcept = default;
 MotionEstimator& MotionEstimator::operator=(MotionEstimator&&) noexcept = default;
 
 void MotionEstimator::Observe(const OdometryReading& reading) { impl_->Observe(reading); }
-void MotionEstimator::Observe(const LaserScan& scan, bool must_match) {
-  impl_->Observe(scan, must_match);
+void MotionEstimator::Observe(const LaserScan& scan, bool must_match, const FacedPoints* points) {
+  impl_->Observe(scan, must_match, points);
 }
 void MotionEstimator::StartNode() { impl_->StartNode(); }
 void MotionEstimator::EnterTransit() { impl_->EnterTransit(); }

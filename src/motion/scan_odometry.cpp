@@ -119,8 +119,8 @@ Alignment ScanOdometry::AlignUnlessOverruled(const FacedPoints& points, const Po
 // The stages of a scan: Predict by the wheels, Match against the local map, Believe the match or
 // not, Fuse it with the wheels, and KeepMap.
 UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
-                                     bool must_match) {
-  View view(scan, reach_m_);
+                                     bool must_match, const FacedPoints* points) {
+  View view(scan, reach_m_, points);
   if (!maps_.current) {
     Begin(view, T_last_now.mean);
     return T_last_now;
@@ -162,6 +162,7 @@ const FacedPoints& ScanOdometry::View::MapPoints() {
 }
 
 const FacedPoints& ScanOdometry::View::AllPoints() {
+  if (given_ != nullptr) return *given_;
   if (!all_points_) all_points_.emplace(*PointsInRobot(scan_));
   return *all_points_;
 }

@@ -21,9 +21,9 @@ class ScanOdometry {
   /// Motion since the scan before (or the first scan: identity), corrected. `T_last_now` is what
   /// the wheels say it was; without wheels a guess with a covariance to match.
   /// `must_match`: match this scan however little the robot moved, since what is not corrected now
-  /// never will be.
+  /// never will be. `points`: of the whole scan, where somebody has made them already.
   UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
-                         bool must_match = false);
+                         bool must_match = false, const FacedPoints* points = nullptr);
 
   /// The robot is somewhere else altogether: forget the local maps, go on from here, and look as
   /// far as there is to see.
@@ -78,7 +78,8 @@ class ScanOdometry {
   /// What is looked at of a scan, made when it is.
   class View {
    public:
-    View(const LaserScan& scan, double reach_m) : scan_(scan), reach_m_(reach_m) {}
+    View(const LaserScan& scan, double reach_m, const FacedPoints* all_points)
+        : scan_(scan), reach_m_(reach_m), given_(all_points) {}
 
     const FacedPoints& Points() { return Within(reach_m_, &points_); }
     /// Where the points of a map end, they would hold back a robot that moves on: it gets more.
@@ -90,6 +91,7 @@ class ScanOdometry {
 
     const LaserScan& scan_;
     double reach_m_;
+    const FacedPoints* given_;  ///< all; null: nobody has made them
     std::optional<FacedPoints> points_, map_points_, all_points_;
   };
   /// What the wheels say since the scan matched last.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "masked_mapper/log/bounded_queue.hpp"
 
@@ -22,8 +23,12 @@ class RunAhead {
   /// Runs in the thread. What it throws, Next() throws, behind what was made before.
   using Producer = std::function<void(const Sink&)>;
 
-  RunAhead(std::size_t most_ahead, Producer producer)
-      : items_(most_ahead), thread_([this, producer = std::move(producer)] { Run(producer); }) {}
+  /// Small items are handed over `at_once` together, since it takes time to wake a thread; so many
+  /// times `most_ahead` are then waiting at most.
+  RunAhead(std::size_t most_ahead, Producer producer, std::size_t at_once = 1)
+      : at_once_(at_once),
+        items_(most_ahead),
+        thread_([this, producer = std::move(producer)] { Run(producer); }) {}
   /// Waits until the producer has returned.
   ~RunAhead() {
     items_.Close();
@@ -34,22 +39,38 @@ class RunAhead {
 
   /// Empty when the producer has returned and all that it made is taken.
   std::optional<T> Next() {
-    std::optional<T> item = items_.Pop();
-    if (!item && error_) std::rethrow_exception(std::exchange(error_, nullptr));
-    return item;
+    while (next_ == taken_.size()) {
+      std::optional<std::vector<T>> items = items_.Pop();
+      if (!items) {
+        if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+        return std::nullopt;
+      }
+      taken_ = std::move(*items);
+      next_ = 0;
+    }
+    return std::move(taken_[next_++]);
   }
 
  private:
   void Run(const Producer& producer) {
+    std::vector<T> made;
+    const auto hand_over = [&] { return items_.Push(std::exchange(made, {})); };
     try {
-      producer([this](T item) { return items_.Push(std::move(item)); });
+      producer([&](T item) {
+        made.push_back(std::move(item));
+        return made.size() < at_once_ || hand_over();
+      });
     } catch (...) {
       error_ = std::current_exception();
     }
+    if (!made.empty()) hand_over();
     items_.Close();
   }
 
-  BoundedQueue<T> items_;
+  const std::size_t at_once_;
+  std::vector<T> taken_;
+  std::size_t next_ = 0;  ///< of those taken
+  BoundedQueue<std::vector<T>> items_;
   std::exception_ptr error_;  ///< written before the queue is closed, read after
   std::thread thread_;        ///< the last, since it uses the others
 };

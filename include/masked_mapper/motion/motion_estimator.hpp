@@ -11,6 +11,8 @@
 
 namespace masked_mapper {
 
+struct FacedPoints;
+
 /// A scan straightened for a robot that goes on as in the step before it.
 LaserScan StraightenedBySteps(LaserScan scan, const Pose2& T_before_now, double seconds);
 
@@ -24,9 +26,11 @@ class MotionEstimator {
   /// Observations in order of stamps. The path moves at scans; readings between them gather.
   /// A scan that is still bent (`beam_time`) is straightened by the step before.
   /// `must_match`: the scene is about to be left, so that no correction may wait.
+  /// `points`: of the scan as it is, where somebody has made them already; a bent one's are not
+  /// asked for.
   /// A scan before which the wheels were silent moved as scans say: silence is no rest.
   void Observe(const OdometryReading& reading);
-  void Observe(const LaserScan& scan, bool must_match = false);
+  void Observe(const LaserScan& scan, bool must_match = false, const FacedPoints* points = nullptr);
   /// A node was made at the scan observed last: motion and uncertainty are counted from now on.
   void StartNode();
   /// The robot is in a cab: only what is near stays the same when a door opens.
