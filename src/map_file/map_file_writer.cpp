@@ -10,6 +10,7 @@
 #include "map_rows.hpp"
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/options/option_table.hpp"
+#include "masked_mapper/scan_matching/for_each.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "packed_bytes.hpp"
 #include "schema.hpp"
@@ -165,10 +166,28 @@ void WriteLogStamps(const BuildingMap& result, const Database& database) {
   }
 }
 
-void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& database) {
-  Statement insert(database, "INSERT INTO scans VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+std::string PackedRanges(const LaserScan& scan) {
   std::string bytes;
+  for (const float range : scan.ranges) AppendBytes(range, bytes);
+  return Pack(bytes, sizeof(float));
+}
+
+// They are packed on several threads, as many as fit into a little memory, and written in order.
+void WriteScans(const std::vector<KeptScan>& kept_scans, int threads, const Database& database) {
+  constexpr std::size_t kPackedAtOnce = 1024;
+  constexpr std::size_t kShare = 32;
+  Statement insert(database, "INSERT INTO scans VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  std::vector<std::string> all_packed(kPackedAtOnce);
   for (std::size_t i = 0; i < kept_scans.size(); ++i) {
+    if (i % kPackedAtOnce == 0) {
+      const std::size_t end = std::min(i + kPackedAtOnce, kept_scans.size());
+      ForEach((end - i + kShare - 1) / kShare, threads, [&](std::size_t share) {
+        const std::size_t first = i + share * kShare;
+        for (std::size_t one = first; one < std::min(first + kShare, end); ++one) {
+          all_packed[one - i] = PackedRanges(kept_scans[one].scan);
+        }
+      });
+    }
     const LaserScan& scan = kept_scans[i].scan;
     insert.Bind(Id(i)).Bind(Id(kept_scans[i].trajectory_index)).Bind(scan.stamp);
     BindPose(scan.T_robot_laser, insert);
@@ -178,9 +197,7 @@ void WriteScans(const std::vector<KeptScan>& kept_scans, const Database& databas
     } else {
       insert.BindNull().BindNull().BindNull();
     }
-    bytes.clear();
-    for (const float range : scan.ranges) AppendBytes(range, bytes);
-    const std::string packed = Pack(bytes, sizeof(float));
+    const std::string& packed = all_packed[i % kPackedAtOnce];
     insert.Bind(Id(scan.size())).BindBlob(packed).Bind(std::int64_t{Checksum(packed)}).Put();
   }
 }
@@ -226,7 +243,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     WriteClosures(result.closures, database);
     WriteTrajectory(result.trajectory, database);
     WriteLogStamps(result, database);
-    WriteScans(result.kept_scans, database);
+    WriteScans(result.kept_scans, origin.options.threads, database);
     WriteTransits(result.transits, database);
     WriteDrives(result.drives, database);
     WriteAnnotations(result, database);

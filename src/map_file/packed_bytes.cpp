@@ -1,19 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "packed_bytes.hpp"
 
+#include <libdeflate.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <new>
 
 #include "database.hpp"
+#include "masked_mapper/text/check.hpp"
 
 namespace masked_mapper {
 namespace {
 
-// Measured on the kept scans of a campus: level 1 takes a third of the time of level 6 and a tenth
-// more bytes.
-constexpr int kLevel = 1;
+// Measured on the kept scans of a campus: libdeflate at level 2 takes less than half of the time of
+// zlib at level 1, and no more bytes.
+constexpr int kLevel = 2;
+
+// Kept from one packing to the next, since to make it takes as long as to pack a scan.
+class Packer {
+ public:
+  Packer() : compressor_(libdeflate_alloc_compressor(kLevel)) {
+    if (compressor_ == nullptr) throw std::bad_alloc();
+  }
+  ~Packer() { libdeflate_free_compressor(compressor_); }
+  Packer(const Packer&) = delete;
+  Packer& operator=(const Packer&) = delete;
+
+  std::string Packed(const std::string& bytes) {
+    std::string packed(libdeflate_zlib_compress_bound(compressor_, bytes.size()), '\0');
+    const std::size_t size = libdeflate_zlib_compress(compressor_, bytes.data(), bytes.size(),
+                                                      packed.data(), packed.size());
+    Check(size > 0, "what is packed has room for it");
+    packed.resize(size);
+    return packed;
+  }
+
+ private:
+  libdeflate_compressor* compressor_;
+};
 
 std::string Sorted(std::string_view bytes, std::size_t width) {
   std::string sorted(bytes.size(), '\0');
@@ -42,14 +67,8 @@ std::uint32_t Checksum(std::string_view bytes, std::uint32_t before) {
 }
 
 std::string Pack(std::string_view bytes, std::size_t width) {
-  const std::string sorted = Sorted(bytes, width);
-  uLongf size = compressBound(static_cast<uLong>(sorted.size()));
-  std::string packed(size, '\0');
-  const int code = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                             reinterpret_cast<const Bytef*>(sorted.data()), sorted.size(), kLevel);
-  if (code != Z_OK) throw std::bad_alloc();  // the only way in which it can fail
-  packed.resize(size);
-  return packed;
+  thread_local Packer packer;
+  return packer.Packed(Sorted(bytes, width));
 }
 
 std::string Unpack(std::string_view packed, std::size_t width, std::size_t size) {
