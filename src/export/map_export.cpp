@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <future>
 #include <new>
 #include <string>
 #include <system_error>
@@ -15,7 +14,10 @@
 #include "closures_file.hpp"
 #include "floor_label.hpp"
 #include "g2o_file.hpp"
+#include "masked_mapper/rendering/drawn_areas.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
+#include "masked_mapper/rendering/point_cloud.hpp"
+#include "masked_mapper/scan_matching/for_each.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "occupancy_grid_file.hpp"
 #include "octomap_file.hpp"
@@ -78,6 +80,9 @@ class Unwritten {
     files_.insert(files_.end(), files.begin(), files.end());
     is_too_large_ = is_too_large_ || too_large;
   }
+  void Add(const Unwritten& others) {
+    if (!others.empty()) Add(others.files_, others.reason_, others.is_too_large_);
+  }
 
   /// One line: the reason is that of the first.
   std::string Text() const {
@@ -98,7 +103,7 @@ class Unwritten {
   bool is_too_large_ = false;
 };
 
-/// Writes the files of a map one after the other, whatever becomes of each.
+/// Writes the files of a map, whatever becomes of each.
 class MapWriter {
  public:
   MapWriter(const BuildingMap& result, const ExportOptions& options,
@@ -111,7 +116,7 @@ class MapWriter {
       OccupancyGrid grid;
       grid.resolution_m = options_.grid.resolution_m;
       const std::string stem = "floors/" + floors()[i].label;
-      const bool is_drawn = Try({stem + ".pcd", stem + ".pgm", stem + ".yaml"}, [&] {
+      const bool is_drawn = Try({stem + ".pcd", stem + ".pgm", stem + ".yaml"}, unwritten_, [&] {
         grid = DrawFloor(result_, scans, static_cast<FloorId>(i), options_.grid);
       });
       is_drawn_.push_back(is_drawn);
@@ -119,54 +124,42 @@ class MapWriter {
     }
   }
 
-  void WriteGeometry() {
-    if (std::count(is_drawn_.begin(), is_drawn_.end(), false) > 0) {
-      // A building without one of its floors would pass for the whole.
-      unwritten_.Add({"building.bt", "building.pcd", "building.ply"}, "", true);
-      WriteFloors();
-      return;
-    }
-    // The octree takes about as long as all the rest.
-    auto octree = std::async(options_.grid.threads > 1 ? std::launch::async : std::launch::deferred,
-                             [this] { WriteOctree(); });
-    const ColouredCloud building = WriteFloors();
-    Write("building.pcd", [&](const auto& path) { WritePcd(building, path); });
-    Write("building.ply", [&](const auto& path) { WritePly(building, path); });
-    Try({"building.bt"}, [&] { octree.get(); });
-  }
-
-  void WriteTables() {
-    const PoseGraph& graph = result_.graph;
-    Write("trajectory.tum",
-          [&](const auto& path) { WriteTrajectory(result_.trajectory, graph.floors(), path); });
-    WriteDrives();
-    Write("nodes.tum", [&](const auto& path) { WriteNodes(graph, path); });
-    Write("graph.g2o", [&](const auto& path) { WriteG2o(graph, path); });
-    Write("closures.csv", [&](const auto& path) { WriteClosures(result_.closures, graph, path); });
-  }
-
-  std::string Report() {
-    std::string data;
-    Try({"report.html"},
-        [&] { data = ReportData(result_, grids_, options_.grid.max_usable_range_m); });
-    return data;
+  /// All but the summary and the report, for which they are worked out.
+  void WriteFiles(const RunDescription& run, Summary& summary, std::string& report) {
+    // A building without one of its floors would pass for the whole.
+    const bool is_whole = std::count(is_drawn_.begin(), is_drawn_.end(), false) == 0;
+    if (!is_whole) unwritten_.Add({"building.bt", "building.pcd", "building.ply"}, "", true);
+    // What takes longest comes first.
+    const std::vector<std::function<void(Unwritten&)>> parts = {
+        [&](Unwritten& unwritten) {
+          if (is_whole) Try({"building.bt"}, unwritten, [&] { WriteOctree(); });
+        },
+        [&](Unwritten& unwritten) { WriteClouds(is_whole, unwritten); },
+        [&](Unwritten& unwritten) {
+          Try({"report.html"}, unwritten,
+              [&] { report = ReportData(result_, grids_, options_.grid.max_usable_range_m); });
+        },
+        [&](Unwritten& /*unwritten*/) { summary = Summarise(result_, run, grids_); },
+        [&](Unwritten& unwritten) { WriteTables(unwritten); }};
+    std::vector<Unwritten> unwritten(parts.size());
+    ForEach(parts.size(), options_.grid.threads, [&](std::size_t i) { parts[i](unwritten[i]); });
+    for (const Unwritten& of_part : unwritten) unwritten_.Add(of_part);
   }
 
   void WriteSummaryAndReport(Summary& summary, const std::string& report) {
     if (!unwritten_.empty()) summary.warnings.push_back(unwritten_.Text());
-    Write("summary.json", [&](const auto& path) { WriteSummary(summary, path); });
+    Write("summary.json", unwritten_, [&](const auto& path) { WriteSummary(summary, path); });
     if (report.empty()) return;
-    Write("report.html", [&](const auto& path) { WriteReport(report, summary, path); });
+    Write("report.html", unwritten_, [&](const auto& path) { WriteReport(report, summary, path); });
   }
 
-  const std::vector<OccupancyGrid>& grids() const { return grids_; }
   const Unwritten& unwritten() const { return unwritten_; }
 
  private:
   const std::vector<Floor>& floors() const { return result_.graph.floors(); }
 
   /// Whether it was done; if not, the files are removed and noted.
-  bool Try(const Names& files, const std::function<void()>& write) {
+  bool Try(const Names& files, Unwritten& unwritten, const std::function<void()>& write) const {
     std::string reason;
     bool too_large = false;
     try {
@@ -180,15 +173,15 @@ class MapWriter {
     } catch (const std::exception& error) {
       reason = error.what();
     }
-    unwritten_.Add(files, reason, too_large);
+    unwritten.Add(files, reason, too_large);
     std::error_code ignored;
     for (const std::string& file : files) std::filesystem::remove(folder_ / file, ignored);
     return false;
   }
 
-  void Write(const std::string& file,
-             const std::function<void(const std::filesystem::path&)>& write) {
-    Try({file}, [&] { write(folder_ / file); });
+  void Write(const std::string& file, Unwritten& unwritten,
+             const std::function<void(const std::filesystem::path&)>& write) const {
+    Try({file}, unwritten, [&] { write(folder_ / file); });
   }
 
   void WriteOctree() const {
@@ -199,28 +192,46 @@ class MapWriter {
     WriteOctomap(BuildOctree(layers, options_.octree), folder_ / "building.bt");
   }
 
+  void WriteClouds(bool is_whole, Unwritten& unwritten) const {
+    const ColouredCloud building = WriteFloors(unwritten);
+    if (!is_whole) return;
+    Write("building.pcd", unwritten, [&](const auto& path) { WritePcd(building, path); });
+    Write("building.ply", unwritten, [&](const auto& path) { WritePly(building, path); });
+  }
+
   /// And gives their walls, all together.
-  ColouredCloud WriteFloors() {
+  ColouredCloud WriteFloors(Unwritten& unwritten) const {
     const std::vector<Colour> colours = FloorColours(floors());
     ColouredCloud building;
     for (std::size_t i = 0; i < grids_.size(); ++i) {
       const Floor& floor = floors()[i];
       const std::string stem = "floors/" + floor.label;
-      Write(stem + ".g2o",
+      Write(stem + ".g2o", unwritten,
             [&](const auto& path) { WriteG2o(result_.graph, static_cast<FloorId>(i), path); });
       if (!is_drawn_[i]) continue;
       const ColouredCloud cloud =
           Coloured(WallCloud(grids_[i], floor.elevation, static_cast<std::uint32_t>(i)), colours);
-      Write(stem + ".pcd", [&](const auto& path) { WritePcd(cloud, path); });
-      Try({stem + ".pgm", stem + ".yaml"},
+      Write(stem + ".pcd", unwritten, [&](const auto& path) { WritePcd(cloud, path); });
+      Try({stem + ".pgm", stem + ".yaml"}, unwritten,
           [&] { WriteOccupancyGrid(grids_[i], (folder_ / stem).string()); });
       building += cloud;
     }
     return building;
   }
 
+  void WriteTables(Unwritten& unwritten) const {
+    const PoseGraph& graph = result_.graph;
+    Write("trajectory.tum", unwritten,
+          [&](const auto& path) { WriteTrajectory(result_.trajectory, graph.floors(), path); });
+    WriteDrives(unwritten);
+    Write("nodes.tum", unwritten, [&](const auto& path) { WriteNodes(graph, path); });
+    Write("graph.g2o", unwritten, [&](const auto& path) { WriteG2o(graph, path); });
+    Write("closures.csv", unwritten,
+          [&](const auto& path) { WriteClosures(result_.closures, graph, path); });
+  }
+
   // Each drive by itself, so that it can be held against a truth of its own.
-  void WriteDrives() {
+  void WriteDrives(Unwritten& unwritten) const {
     if (result_.drives.size() < 2) return;
     std::filesystem::create_directory(folder_ / "drives");
     for (std::size_t i = 0; i < result_.drives.size(); ++i) {
@@ -228,7 +239,7 @@ class MapWriter {
       const std::vector<TrajectoryPose> own(
           result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.begin),
           result_.trajectory.begin() + static_cast<std::ptrdiff_t>(poses.end));
-      Write("drives/" + std::to_string(i + 1) + ".tum",
+      Write("drives/" + std::to_string(i + 1) + ".tum", unwritten,
             [&](const auto& path) { WriteTrajectory(own, floors(), path); });
     }
   }
@@ -285,11 +296,9 @@ Summary WriteMap(const BuildingMap& result, const RunDescription& run, const Exp
 
   const auto export_start = Clock::now();
   std::filesystem::create_directory(folder / "floors");
-  writer.WriteGeometry();
-  writer.WriteTables();
-  const std::string report = writer.Report();
-
-  Summary summary = Summarise(result, run, writer.grids());
+  Summary summary;
+  std::string report;
+  writer.WriteFiles(run, summary, report);
   summary.seconds.rendering += rendering_seconds;
   summary.seconds.export_ += SecondsSince(export_start);
   summary.seconds.total += SecondsSince(rendering_start);
