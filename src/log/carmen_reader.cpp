@@ -9,6 +9,7 @@
 
 #include "carmen_line.hpp"
 #include "carmen_lines.hpp"
+#include "kept_pass.hpp"
 #include "line_splitter.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "read_ahead.hpp"
@@ -21,6 +22,9 @@ namespace masked_mapper {
 namespace {
 
 constexpr std::size_t kFirstBlock = 256 * 1024;
+/// Of a pass that is kept, which where files are in memory takes memory. A longer log is read
+/// again.
+constexpr std::uint64_t kMostKept = std::uint64_t{512} << 20U;
 
 /// Whether the beginning of a file could be text: no zero bytes, hardly any control characters.
 bool LooksLikeText(std::string_view beginning) {
@@ -104,7 +108,7 @@ struct WholeLog {
 
 void ReadCarmenLog(const std::string& path, const LogOptions& options,
                    const ScanCalibration& calibration, bool is_unpadded, WholeLog* whole,
-                   const ReadAhead::Sink& sink) {
+                   KeptPass* kept, const ReadAhead::Sink& sink) {
   TextAhead text(path);
   CarmenLines lines(options, calibration, is_unpadded);
   LineSplitter splitter;
@@ -120,8 +124,14 @@ void ReadCarmenLog(const std::string& path, const LogOptions& options,
       lines.SetTrailingBytes(block->trailing_bytes);
       lines.Finish();
     }
-    if (!HandOver(&lines, block->progress, sink)) return;
+    if (!HandOver(&lines, block->progress, [&](ObservationBatch batch) {
+          kept->Add(batch);
+          return sink(std::move(batch));
+        })) {
+      return;
+    }
   }
+  kept->Finish();
   const std::lock_guard<std::mutex> lock(whole->mutex);
   whole->stamps = lines.unpadded_stamps();
   whole->statistics = lines.Statistics();
@@ -135,10 +145,16 @@ class CarmenPlan final : public LogPlan {
   std::unique_ptr<LogReader> Read() override {
     LogStatistics statistics;
     statistics.max_range = calibration_.max_range();
+    if (kept_ && kept_->IsWhole()) {
+      return std::make_unique<ReadAhead>(
+          statistics, [kept = kept_](const ReadAhead::Sink& sink) { kept->Replay(sink); });
+    }
+    kept_ = std::make_shared<KeptPass>(kMostKept);
     return std::make_unique<ReadAhead>(
-        statistics, [path = path_, options = options_, calibration = calibration_,
-                     is_unpadded = is_unpadded_, whole = whole_](const ReadAhead::Sink& sink) {
-          ReadCarmenLog(path, options, calibration, is_unpadded, whole.get(), sink);
+        statistics,
+        [path = path_, options = options_, calibration = calibration_, is_unpadded = is_unpadded_,
+         whole = whole_, kept = kept_](const ReadAhead::Sink& sink) {
+          ReadCarmenLog(path, options, calibration, is_unpadded, whole.get(), kept.get(), sink);
         });
   }
 
@@ -146,6 +162,7 @@ class CarmenPlan final : public LogPlan {
     const std::lock_guard<std::mutex> lock(whole_->mutex);
     if (is_unpadded_ || !whole_->stamps.IsFound()) return false;
     is_unpadded_ = true;
+    kept_.reset();
     return true;
   }
 
@@ -162,6 +179,7 @@ class CarmenPlan final : public LogPlan {
   LogOptions options_;
   ScanCalibration calibration_;
   std::shared_ptr<WholeLog> whole_ = std::make_shared<WholeLog>();
+  std::shared_ptr<KeptPass> kept_;  ///< of the last pass
   bool is_unpadded_ = false;
 };
 

@@ -109,7 +109,7 @@ Observation OfKind(std::size_t kind) {
 
 }  // namespace
 
-KeptPass::KeptPass() {
+KeptPass::KeptPass(std::uint64_t most_bytes) : most_bytes_(most_bytes) {
   std::error_code no_folder;
   std::string path = (fs::temp_directory_path(no_folder) / "masked_mapper_pass_XXXXXX").string();
   const int descriptor = no_folder ? -1 : ::mkstemp(path.data());
@@ -127,8 +127,9 @@ void KeptPass::Add(const ObservationBatch& batch) {
     std::visit([&packer](const auto& reading) { Each(reading, &packer); }, observation);
   }
   const std::size_t size = packer.bytes().size();
-  if (std::fwrite(packer.bytes().data(), 1, size, file_.get()) != size) {
-    file_.reset();  // no room for it: the next pass makes it again
+  if (size > most_bytes_ - end_ ||
+      std::fwrite(packer.bytes().data(), 1, size, file_.get()) != size) {
+    file_.reset();  // there is no room for it: the next pass makes it again
     return;
   }
   places_.push_back({end_, size, batch.progress});

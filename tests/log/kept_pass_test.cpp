@@ -75,6 +75,20 @@ TEST(KeptPassTest, GivesWhatItWasGiven) {
   }
 }
 
+TEST(KeptPassTest, WhatIsTooLargeIsNotKept) {
+  ObservationBatch batch;
+  batch.observations = {SomeScan(2.0)};
+  KeptPass large(100'000);
+  KeptPass small(100);
+  for (KeptPass* kept : {&large, &small}) {
+    kept->Add(batch);
+    kept->Add(batch);
+    kept->Finish();
+  }
+  EXPECT_TRUE(large.IsWhole());
+  EXPECT_FALSE(small.IsWhole());
+}
+
 TEST(KeptPassTest, EndsWhenNobodyWantsMore) {
   KeptPass kept;
   for (int i = 0; i < 3; ++i) kept.Add({});
