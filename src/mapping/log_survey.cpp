@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -106,6 +107,7 @@ class Surveyor {
         turns_left_out_(mending.turns_left_out),
         asks_wheels_(options.motion.source == MotionSource::kAuto ||
                      options.motion.source == MotionSource::kFused),
+        threads_(options.threads),
         listeners_(options.threads > 1) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
     if (asks_wheels_) listeners_.Add(&standstill_);
@@ -122,7 +124,12 @@ class Surveyor {
   }
 
   /// Behind the last observation.
-  void EndPass() { listeners_.Finish(); }
+  void EndPass() {
+    listeners_.Finish();
+    // What scans say of their sweep is worked out beside what they say of the wheels.
+    sweep_found_ = std::async(threads_ > 1 ? std::launch::async : std::launch::deferred,
+                              [this] { return sweep_.Find(threads_); });
+  }
 
   /// What is to be mended of the wheels, each with its finding.
   WheelMending Wheels() {
@@ -202,7 +209,7 @@ class Surveyor {
   }
 
   void SettleSweep() {
-    SweepCheck::Verdict sweep = sweep_.Find();
+    SweepCheck::Verdict sweep = sweep_found_.get();
     survey_.sweep_s_per_rad = sweep.seconds_per_rad;
     if (sweep.finding) survey_.findings.push_back(std::move(*sweep.finding));
   }
@@ -234,7 +241,10 @@ class Surveyor {
   std::vector<float> travels_;  ///< m, from scan to scan
   std::vector<float> turns_;    ///< rad
   std::vector<float> periods_;  ///< s
-  Listeners listeners_;         ///< the last, since their threads use the others
+  int threads_;
+  // The last, since their threads use the others.
+  std::future<SweepCheck::Verdict> sweep_found_;
+  Listeners listeners_;
 };
 
 }  // namespace

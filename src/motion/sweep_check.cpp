@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "masked_mapper/geometry/median.hpp"
+#include "masked_mapper/motion/sweep_straightener.hpp"
+#include "masked_mapper/scan_matching/for_each.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "straightened_scan.hpp"
@@ -177,13 +179,13 @@ std::vector<double> SweepCheck::Fits(const Pair& pair) const {
   return fits;
 }
 
-std::optional<SweepEstimate> SweepCheck::Measured() const {
+std::optional<SweepEstimate> SweepCheck::Measured(int threads) const {
   if (pairs_.size() < kLeastPairs) return std::nullopt;
-  std::vector<std::vector<double>> fits;
+  std::vector<std::vector<double>> fits(pairs_.size());
+  ForEach(pairs_.size(), threads, [&](std::size_t pair) { fits[pair] = Fits(pairs_[pair]); });
   std::vector<double> sum(2 * kTried + 1, 0.0);
-  for (const Pair& pair : pairs_) {
-    fits.push_back(Fits(pair));
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += fits.back()[i];
+  for (const std::vector<double>& of_pair : fits) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += of_pair[i];
   }
   const std::optional<double> top = Top(sum);
   if (!top) return std::nullopt;
@@ -199,9 +201,9 @@ std::optional<SweepEstimate> SweepCheck::Measured() const {
   return SweepEstimate{(*top - kTried) * unit, std::sqrt(squares * (count - 1.0) / count) * unit};
 }
 
-SweepCheck::Verdict SweepCheck::Find() const {
+SweepCheck::Verdict SweepCheck::Find(int threads) const {
   const double stated = Stated();
-  const std::optional<SweepEstimate> measured = Measured();
+  const std::optional<SweepEstimate> measured = Measured(threads);
   if (!measured) return {stated, Finding(stated, std::nullopt)};
   const double longest = LongestSweep();
   const auto off = [&](double seconds_per_rad) {

@@ -33,13 +33,14 @@ class SweepCheck {
   /// What the log states; 0: nothing that could be.
   double Stated() const;
   /// What the scans themselves say; empty: the robot turned too little to tell.
-  std::optional<SweepEstimate> Measured() const;
+  std::optional<SweepEstimate> Measured(int threads = 1) const;
 
   struct Verdict {
     double seconds_per_rad = 0.0;          ///< to be used
     std::optional<SensorFinding> finding;  ///< where it is not what the log states
   };
-  Verdict Find() const;
+  /// The same at any number of threads.
+  Verdict Find(int threads = 1) const;
 
  private:
   /// A scan and how the robot moved after it.
