@@ -4,7 +4,7 @@
 #include <utility>
 #include <variant>
 
-#include "masked_mapper/map/stage_timer.hpp"
+#include "masked_mapper/map/building_map.hpp"
 
 namespace masked_mapper {
 

@@ -12,16 +12,14 @@
 
 #include "masked_mapper/geometry/median.hpp"
 #include "masked_mapper/log/floor_file.hpp"
-#include "masked_mapper/log/work_behind.hpp"
 #include "masked_mapper/motion/floor_tracker.hpp"
-#include "masked_mapper/motion/mount_check.hpp"
-#include "masked_mapper/motion/standstill_check.hpp"
 #include "masked_mapper/motion/sweep_check.hpp"
 #include "masked_mapper/motion/wheel_check.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "unbroken_way.hpp"
 #include "wheel_mending.hpp"
+#include "work_behind.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "masked_mapper/geometry/median.hpp"
-#include "masked_mapper/motion/sweep_straightener.hpp"
 #include "masked_mapper/scan_matching/for_each.hpp"
 #include "masked_mapper/scan_matching/local_map.hpp"
 #include "masked_mapper/text/number_text.hpp"

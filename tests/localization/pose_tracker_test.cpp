@@ -7,7 +7,7 @@
 
 #include "localization/evidence.hpp"
 #include "localization/room_drive.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
+#include "mapping/masked_mapper.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
 
 namespace masked_mapper {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/bounded_queue.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 
 #include <gtest/gtest.h>
 

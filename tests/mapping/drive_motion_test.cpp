@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
 
 namespace masked_mapper {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <stdexcept>
 
+#include "mapping/masked_mapper.hpp"
 #include "mapping/ring_drive.hpp"
 #include "mapping/same_map.hpp"
-#include "masked_mapper/mapping/masked_mapper.hpp"
 
 namespace masked_mapper {
 namespace {

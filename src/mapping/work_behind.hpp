@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "masked_mapper/log/bounded_queue.hpp"
+#include "masked_mapper/log/run_ahead.hpp"
 
 namespace masked_mapper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/log/work_behind.hpp"
+#include "mapping/work_behind.hpp"
 
 #include <gtest/gtest.h>
 
