@@ -12,6 +12,7 @@ TEST(Options, ThreadsReachEveryRoomThatWorksOnSeveral) {
   SettleThreads(options);
   EXPECT_EQ(options.threads, 3);
   EXPECT_EQ(options.mapping.closures.matcher.threads, 3);
+  EXPECT_EQ(options.mapping.threads, 3);
   EXPECT_EQ(options.grid.threads, 3);
 }
 
