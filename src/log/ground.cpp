@@ -55,6 +55,15 @@ Eigen::Vector3d UpOf(double slope_x, double slope_y) {
   return Eigen::Vector3d(-slope_x, -slope_y, 1.0).normalized();
 }
 
+/// One of kOctants, in whatever order: by comparisons, since an angle costs as much as all else
+/// that is done with a point.
+std::size_t OctantOf(const Eigen::Vector3d& direction) {
+  const double x = direction.x();
+  const double y = direction.y();
+  const auto is = [](bool so) { return static_cast<std::size_t>(so); };
+  return is(x < 0.0) | is(y < 0.0) << 1U | is(std::abs(x) < std::abs(y)) << 2U;
+}
+
 std::size_t SectorOf(const Eigen::Vector3d& direction, std::size_t sectors) {
   const double turn = (std::atan2(direction.y(), direction.x()) + kPi) / (2.0 * kPi);
   return static_cast<std::size_t>(turn * static_cast<double>(sectors)) % sectors;
@@ -140,7 +149,7 @@ std::optional<Plane> Refined(const Points& points, Plane plane) {
       const Eigen::Vector3d row(point.x(), point.y(), 1.0);
       normal += row * row.transpose();
       right += row * point.z();
-      octants[SectorOf(point, kOctants)] = true;
+      octants[OctantOf(point)] = true;
       ++count;
     }
     const auto seen = static_cast<std::size_t>(std::count(octants.begin(), octants.end(), true));

@@ -119,7 +119,29 @@ std::string FaultOf(const CloudMessage& cloud) {
   return "";
 }
 
-/// Numbers of one field, whatever their type.
+template <typename T, bool kSwapped>
+double NumberAt(const unsigned char* bytes) {
+  std::array<unsigned char, sizeof(T)> own{};
+  std::memcpy(own.data(), bytes, sizeof(T));
+  if constexpr (kSwapped) std::reverse(own.begin(), own.end());
+  T value{};
+  std::memcpy(&value, own.data(), sizeof(T));
+  return static_cast<double>(value);
+}
+
+/// Where the points of a message lie that are returns.
+using Places = std::vector<const unsigned char*>;
+
+/// Neither no number nor at the origin, which stands for a ray that met nothing.
+inline bool IsReturn(const Eigen::Vector3f& position) {
+  const float x = std::abs(position.x());
+  const float y = std::abs(position.y());
+  const float z = std::abs(position.z());
+  const bool is_near = x <= kFarthest && y <= kFarthest && z <= kFarthest;  // no number is not
+  return is_near && x + y + z > 0.0F;
+}
+
+/// Numbers of one field, whatever their type: which it is, is asked once for all points.
 class FieldReader {
  public:
   FieldReader(const Field& field, bool is_bigendian)
@@ -133,75 +155,89 @@ class FieldReader {
     return value;
   }
 
-  double At(const unsigned char* point) const {
-    const unsigned char* bytes = point + offset_;
-    switch (type_) {
-      case 1:
-        return Number<std::int8_t>(bytes);
-      case 2:
-        return Number<std::uint8_t>(bytes);
-      case 3:
-        return Number<std::int16_t>(bytes);
-      case 4:
-        return Number<std::uint16_t>(bytes);
-      case 5:
-        return Number<std::int32_t>(bytes);
-      case 6:
-        return Number<std::uint32_t>(bytes);
-      case 7:
-        return Number<float>(bytes);
-      default:
-        return Number<double>(bytes);
+  /// `take(i, number)` of each point; of which type the field is, is asked once.
+  template <typename Take>
+  void Each(const Places& places, const Take& take) const {
+    if (swapped_) {
+      EachAs<true>(places, take);
+    } else {
+      EachAs<false>(places, take);
     }
   }
 
  private:
-  template <typename T>
-  double Number(const unsigned char* bytes) const {
-    std::array<unsigned char, sizeof(T)> own{};
-    std::memcpy(own.data(), bytes, sizeof(T));
-    if (swapped_) std::reverse(own.begin(), own.end());
-    T value{};
-    std::memcpy(&value, own.data(), sizeof(T));
-    return static_cast<double>(value);
+  template <bool kSwapped, typename Take>
+  void EachAs(const Places& places, const Take& take) const {
+    switch (type_) {
+      case 1:
+        return EachOf<std::int8_t, kSwapped>(places, take);
+      case 2:
+        return EachOf<std::uint8_t, kSwapped>(places, take);
+      case 3:
+        return EachOf<std::int16_t, kSwapped>(places, take);
+      case 4:
+        return EachOf<std::uint16_t, kSwapped>(places, take);
+      case 5:
+        return EachOf<std::int32_t, kSwapped>(places, take);
+      case 6:
+        return EachOf<std::uint32_t, kSwapped>(places, take);
+      case 7:
+        return EachOf<float, kSwapped>(places, take);
+      default:
+        return EachOf<double, kSwapped>(places, take);
+    }
+  }
+  template <typename T, bool kSwapped, typename Take>
+  void EachOf(const Places& places, const Take& take) const {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      take(i, NumberAt<T, kSwapped>(places[i] + offset_));
+    }
   }
 
-  std::size_t offset_;
+  std::uint64_t offset_;
   std::uint8_t type_;
   bool swapped_;
 };
 
-/// s after `stamp`, of times in whatever unit; empty: they tell nothing. A sweep lasts between 2 ms
-/// and 2 s, which only one of the units makes of it.
-std::vector<float> SecondsAfter(double stamp, const std::vector<double>& times) {
+/// How times in whatever unit tell seconds after a stamp.
+struct TimeUnit {
+  double zero = 0.0;
+  double unit = 0.0;  ///< s; 0: they tell nothing
+
+  /// Of times, in seconds after `stamp`. A sweep lasts between 2 ms and 2 s, which only one of the
+  /// units makes of it.
+  static TimeUnit Of(double stamp, double first, double last) {
+    constexpr double kShortest = 0.002;
+    constexpr double kLongest = 2.0;
+    for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
+      const double span = (last - first) * unit;
+      if (!(span > kShortest && span <= kLongest)) continue;
+      // By the clock of the header, or counted from it, or by a clock that nobody knows.
+      constexpr double kNear = 10.0;  // s
+      if (std::abs(first * unit - stamp) < kNear) return {stamp / unit, unit};
+      if (std::abs(first * unit) < kNear) return {0.0, unit};
+      return {first, unit};
+    }
+    return {};
+  }
+};
+
+/// Whether the times tell something; then the points have them.
+bool ReadTimes(const FieldReader& reader, const Places& places, double stamp, CloudPoints* points) {
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
-  for (const double time : times) {
-    if (!std::isfinite(time)) continue;
+  reader.Each(places, [&](std::size_t, double time) {
+    if (!std::isfinite(time)) return;
     first = std::min(first, time);
     last = std::max(last, time);
-  }
-  constexpr double kShortest = 0.002;
-  constexpr double kLongest = 2.0;
-  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
-    const double span = (last - first) * unit;
-    if (!(span > kShortest && span <= kLongest)) continue;
-    // By the clock of the header, or counted from it, or by a clock that nobody knows.
-    constexpr double kNear = 10.0;  // s
-    double zero = first;
-    if (std::abs(first * unit - stamp) < kNear) {
-      zero = stamp / unit;
-    } else if (std::abs(first * unit) < kNear) {
-      zero = 0.0;
-    }
-    std::vector<float> seconds;
-    seconds.reserve(times.size());
-    for (const double time : times) {
-      seconds.push_back(std::isfinite(time) ? static_cast<float>((time - zero) * unit) : 0.0F);
-    }
-    return seconds;
-  }
-  return {};
+  });
+  const TimeUnit times = TimeUnit::Of(stamp, first, last);
+  if (times.unit == 0.0) return false;
+  reader.Each(places, [&](std::size_t i, double time) {
+    if (!std::isfinite(time)) return;
+    (*points)[i].time = static_cast<float>((time - times.zero) * times.unit);
+  });
+  return true;
 }
 
 std::optional<FieldReader> ReaderOf(const CloudMessage& message,
@@ -211,46 +247,68 @@ std::optional<FieldReader> ReaderOf(const CloudMessage& message,
   return FieldReader(*field, message.is_bigendian);
 }
 
+/// `take(place)` of each point.
+template <typename Take>
+void EachPlace(const CloudMessage& message, const Take& take) {
+  // Rows without points may be claimed by the billion.
+  const std::uint64_t rows = message.width == 0 ? 0 : message.height;
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    const unsigned char* point = message.data.data + row * message.row_step;
+    for (std::uint64_t i = 0; i < message.width; ++i, point += message.point_step) take(point);
+  }
+}
+
+/// The returns with their positions; where they stand in the message.
+Places ReadReturns(const CloudMessage& message, CloudPoints* points) {
+  const std::array<FieldReader, 3> axes = {*ReaderOf(message, {"x"}), *ReaderOf(message, {"y"}),
+                                           *ReaderOf(message, {"z"})};
+  Places places;
+  places.reserve(message.height * message.width);
+  CloudPoint read;
+  if (std::all_of(axes.begin(), axes.end(), [](const auto& axis) { return axis.IsFloat(); })) {
+    points->reserve(message.height * message.width);
+    EachPlace(message, [&](const unsigned char* point) {
+      read.position = {axes[0].FloatAt(point), axes[1].FloatAt(point), axes[2].FloatAt(point)};
+      if (!IsReturn(read.position)) return;
+      points->push_back(read);
+      places.push_back(point);
+    });
+    return places;
+  }
+  Places all;
+  EachPlace(message, [&](const unsigned char* point) { all.push_back(point); });
+  CloudPoints numbers(all.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    axes[static_cast<std::size_t>(axis)].Each(all, [&](std::size_t i, double number) {
+      numbers[i].position(axis) = static_cast<float>(number);
+    });
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!IsReturn(numbers[i].position)) continue;
+    points->push_back(numbers[i]);
+    places.push_back(all[i]);
+  }
+  return places;
+}
+
 }  // namespace
 
 std::optional<RosPointCloud> ParsePointCloud(const unsigned char* data, std::size_t size,
                                              MessageEncoding encoding) {
   const CloudMessage message = ReadMessage(data, size, encoding);
   if (!FaultOf(message).empty()) return std::nullopt;
-  const FieldReader x = *ReaderOf(message, {"x"});
-  const FieldReader y = *ReaderOf(message, {"y"});
-  const FieldReader z = *ReaderOf(message, {"z"});
   const auto intensity = ReaderOf(message, {"intensity", "reflectivity", "i"});
   const auto time =
       ReaderOf(message, {"t", "time", "timestamp", "time_stamp", "offset_time", "timeoffset"});
-
   RosPointCloud cloud;
   cloud.header = message.header;
-  cloud.points.reserve(message.height * message.width);
-  const bool are_floats = x.IsFloat() && y.IsFloat() && z.IsFloat();
-  std::vector<double> times;
-  if (time) times.reserve(message.height * message.width);
-  // Rows without points may be claimed by the billion.
-  const std::uint64_t rows = message.width == 0 ? 0 : message.height;
-  for (std::uint64_t row = 0; row < rows; ++row) {
-    const unsigned char* point = message.data.data + row * message.row_step;
-    for (std::uint64_t i = 0; i < message.width; ++i, point += message.point_step) {
-      CloudPoint read;
-      if (are_floats) {
-        read.position = {x.FloatAt(point), y.FloatAt(point), z.FloatAt(point)};
-      } else {
-        read.position = Eigen::Vector3d(x.At(point), y.At(point), z.At(point)).cast<float>();
-      }
-      const float reach = read.position.cwiseAbs().maxCoeff();
-      if (!read.position.allFinite() || !(reach > 0.0F) || reach > kFarthest) continue;
-      if (intensity) read.intensity = static_cast<float>(intensity->At(point));
-      if (time) times.push_back(time->At(point));
-      cloud.points.push_back(read);
-    }
+  const Places places = ReadReturns(message, &cloud.points);
+  if (intensity) {
+    intensity->Each(places, [&cloud](std::size_t i, double value) {
+      cloud.points[i].intensity = static_cast<float>(value);
+    });
   }
-  const std::vector<float> seconds = SecondsAfter(cloud.header.stamp, times);
-  cloud.has_times = !seconds.empty();
-  for (std::size_t i = 0; i < seconds.size(); ++i) cloud.points[i].time = seconds[i];
+  cloud.has_times = time && ReadTimes(*time, places, cloud.header.stamp, &cloud.points);
   return cloud;
 }
 

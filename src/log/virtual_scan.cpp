@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <limits>
 #include <vector>
 
 #include "masked_mapper/geometry/pose2.hpp"
@@ -43,34 +43,56 @@ std::vector<float> Directions(const CloudPoints& points, const Eigen::Vector3f& 
   return directions;
 }
 
-/// The beam nearest to a place that is counted in beams; the one behind the last is the first.
-std::size_t Nearest(float in_beams) { return static_cast<std::size_t>(in_beams + 0.5F); }
+constexpr std::uint32_t kNoBeam = std::numeric_limits<std::uint32_t>::max();
 
-std::size_t BeamOf(float direction, std::size_t beams) {
-  const std::size_t beam = Nearest(direction * static_cast<float>(beams));
-  return beam < beams ? beam : beam - beams;
+/// The beam nearest to a place that is counted in beams; the one behind the last is the first.
+std::uint32_t Nearest(float in_beams) { return static_cast<std::uint32_t>(in_beams + 0.5F); }
+
+std::uint32_t BeamOf(float direction, std::size_t beams) {
+  const auto all = static_cast<std::uint32_t>(beams);
+  const std::uint32_t beam = Nearest(direction * static_cast<float>(beams));
+  return beam < all ? beam : beam - all;
 }
 
-/// The finest beams that the rays fill: enough in each, and none between two columns of the lidar.
-std::size_t FinestBeams(const std::vector<float>& directions) {
-  for (const std::size_t beams : kBeams) {
-    if (beams * kRaysPerBeam > directions.size()) continue;
-    std::vector<char> is_filled(beams, 0);
+/// Rays by the beams that they are nearest to.
+struct Beams {
+  std::size_t count = 0;
+  std::vector<std::uint32_t> of_ray;  ///< kNoBeam: it goes nowhere
+
+  Beams(const std::vector<float>& directions, std::size_t beams) : count(beams) {
+    of_ray.reserve(directions.size());
     for (const float direction : directions) {
-      if (!std::isnan(direction)) is_filled[BeamOf(direction, beams)] = 1;
+      of_ray.push_back(std::isnan(direction) ? kNoBeam : BeamOf(direction, beams));
+    }
+  }
+
+  /// Whether none is empty between two columns of the lidar.
+  bool AreFilled() const {
+    std::vector<char> is_filled(count, 0);
+    for (const std::uint32_t beam : of_ray) {
+      if (beam != kNoBeam) is_filled[beam] = 1;
     }
     std::size_t filled = 0;
     std::size_t holes = 0;
-    for (std::size_t beam = 0; beam < beams; ++beam) {
+    for (std::size_t beam = 0; beam < count; ++beam) {
       filled += is_filled[beam] != 0 ? 1 : 0;
       const bool between =
-          is_filled[(beam + 1) % beams] != 0 && is_filled[(beam + beams - 1) % beams] != 0;
+          is_filled[(beam + 1) % count] != 0 && is_filled[(beam + count - 1) % count] != 0;
       holes += is_filled[beam] == 0 && between ? 1 : 0;
     }
     constexpr std::size_t kFewHoles = 50;  // one of so many
-    if (holes * kFewHoles <= filled) return beams;
+    return holes * kFewHoles <= filled;
   }
-  return kBeams.back();
+};
+
+/// The finest beams that the rays fill: enough in each, and none between two columns of the lidar.
+Beams FinestBeams(const std::vector<float>& directions) {
+  for (const std::size_t count : kBeams) {
+    if (count * kRaysPerBeam > directions.size()) continue;
+    Beams beams(directions, count);
+    if (beams.AreFilled()) return beams;
+  }
+  return {directions, kBeams.back()};
 }
 
 struct Ray {
@@ -79,7 +101,7 @@ struct Ray {
   float offset = 0.0F;  // rad, off the middle of the beam
 };
 
-/// The rays of one beam, nearest first.
+/// The rays of one beam, in the order of the cloud.
 class Beam {
  public:
   Beam(const Ray* begin, const Ray* end, float lidar_height, const WallBand& band)
@@ -89,23 +111,23 @@ class Beam {
         low_(static_cast<float>(band.low_m)),
         high_(static_cast<float>(band.high_m)) {}
 
-  /// The nearest return inside the band; infinity without one.
-  float Nearest() const {
-    const Ray* ray = std::find_if(begin_, end_, [this](const Ray& r) { return InBand(r.height); });
-    return ray == end_ ? kNoReturn : ray->range;
+  /// The nearest return inside the band that is not nearer than `least`; infinity without one.
+  float Nearest(float least = 0.0F) const {
+    float nearest = kNoReturn;
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      const bool counts = InBand(ray->height) && ray->range >= least;
+      nearest = counts ? std::min(nearest, ray->range) : nearest;
+    }
+    return nearest;
   }
 
-  /// The range of the wall; not a number without one. `recedes`: m by which a wall may change its
-  /// range across the beam.
-  float Wall(float recedes) const {
-    float rejected = 0.0F;
-    for (const Ray* ray = begin_; ray != end_; ++ray) {
-      if (!InBand(ray->height) || ray->range < rejected) continue;
-      const float thick = kThick + std::min(recedes, kFlattest * ray->range);
-      const Ray* first = ray;
-      while (first != begin_ && (first - 1)->range == ray->range) --first;
-      if (IsWall(first, thick)) return At(first, thick);
-      rejected = ray->range + 0.25F * thick;
+  /// The range of the wall, where `nearest` is the nearest return; not a number without one.
+  /// `recedes`: m by which a wall may change its range across the beam.
+  float Wall(float nearest, float recedes) const {
+    while (nearest < kNoReturn) {
+      const float thick = kThick + std::min(recedes, kFlattest * nearest);
+      if (IsWall(nearest, thick)) return At(nearest, thick);
+      nearest = Nearest(nearest + 0.25F * thick);
     }
     return kInvalidRange;
   }
@@ -113,16 +135,16 @@ class Beam {
  private:
   bool InBand(float height) const { return height >= low_ && height <= high_; }
 
-  /// Of the wall that begins with the ray `first`.
-  bool IsWall(const Ray* first, float thick) const {
-    const float range = first->range;
+  /// Of the wall that begins at a range.
+  bool IsWall(float range, float thick) const {
     // Returns up to two thicknesses behind the first are one wall.
     const float behind = range + 2.0F * thick;
     float lowest = kNoReturn;
     float highest = -kNoReturn;
     int stopped = 0;
     int passed = 0;
-    for (const Ray* ray = first; ray != end_; ++ray) {
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      if (ray->range < range) continue;
       if (ray->range <= behind) {
         lowest = std::min(lowest, ray->height);
         highest = std::max(highest, ray->height);
@@ -137,17 +159,17 @@ class Beam {
            stopped >= kStoppedPerPassed * passed;
   }
 
-  /// Where the middle of the beam meets the wall: along a straight wall 1 / range is linear in the
-  /// direction.
-  float At(const Ray* first, float thick) const {
+  /// Where the middle of the beam meets the wall that begins at a range: along a straight wall
+  /// 1 / range is linear in the direction.
+  float At(float range, float thick) const {
     double n = 0.0;
     double x = 0.0;
     double y = 0.0;
     double xx = 0.0;
     double xy = 0.0;
-    const float behind = first->range + 2.0F * thick;
-    for (const Ray* ray = first; ray != end_ && ray->range <= behind; ++ray) {
-      if (!InBand(ray->height)) continue;
+    const float behind = range + 2.0F * thick;
+    for (const Ray* ray = begin_; ray != end_; ++ray) {
+      if (!(ray->range >= range && ray->range <= behind) || !InBand(ray->height)) continue;
       const double inverse = 1.0 / ray->range;
       n += 1.0;
       x += ray->offset;
@@ -173,29 +195,28 @@ class Beam {
   float high_;
 };
 
-/// All rays by their beams, each nearest first.
+/// All rays by their beams.
 class Sweep {
  public:
   Sweep(const CloudPoints& points, const Eigen::Vector3f& lidar,
-        const std::vector<float>& directions, std::size_t beams)
-      : begins_(beams + 1, 0) {
-    std::vector<std::uint32_t> beam_of;
-    std::vector<Ray> rays;
-    beam_of.reserve(points.size());
-    rays.reserve(points.size());
-    const auto step = static_cast<float>(2.0 * kPi / static_cast<double>(beams));
+        const std::vector<float>& directions, const Beams& beams)
+      : begins_(beams.count + 1, 0) {
+    for (const std::uint32_t beam : beams.of_ray) {
+      if (beam != kNoBeam) ++begins_[beam + 1];
+    }
+    for (std::size_t beam = 0; beam < beams.count; ++beam) begins_[beam + 1] += begins_[beam];
+    rays_.resize(begins_.back());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    const auto count = static_cast<float>(beams.count);
+    const auto step = static_cast<float>(2.0 * kPi / static_cast<double>(beams.count));
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::isnan(directions[i])) continue;
+      if (beams.of_ray[i] == kNoBeam) continue;
       const Eigen::Vector3f& position = points[i].position;
       const float range = (position - lidar).head<2>().norm();
-      const float in_beams = directions[i] * static_cast<float>(beams);
-      const std::size_t nearest = Nearest(in_beams);
-      beam_of.push_back(static_cast<std::uint32_t>(nearest < beams ? nearest : nearest - beams));
-      rays.push_back({range, position.z(), (in_beams - static_cast<float>(nearest)) * step});
-      ++begins_[beam_of.back() + 1];
+      const float in_beams = directions[i] * count;
+      rays_[next[beams.of_ray[i]]++] = {range, position.z(),
+                                        (in_beams - static_cast<float>(Nearest(in_beams))) * step};
     }
-    for (std::size_t beam = 0; beam < beams; ++beam) begins_[beam + 1] += begins_[beam];
-    TakeSorted(rays, beam_of);
   }
 
   Beam At(std::size_t beam, float lidar_height, const WallBand& band) const {
@@ -203,23 +224,6 @@ class Sweep {
   }
 
  private:
-  void TakeSorted(const std::vector<Ray>& rays, const std::vector<std::uint32_t>& beam_of) {
-    // Ranges are never negative, so that their bits are in their order; of equal ones the ray that
-    // stands first in the cloud is first.
-    std::vector<std::uint64_t> keys(rays.size());
-    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      std::uint32_t bits = 0;
-      std::memcpy(&bits, &rays[i].range, sizeof(bits));
-      keys[next[beam_of[i]]++] = std::uint64_t{bits} << 32U | i;
-    }
-    for (std::size_t beam = 0; beam + 1 < begins_.size(); ++beam) {
-      std::sort(keys.data() + begins_[beam], keys.data() + begins_[beam + 1]);
-    }
-    rays_.reserve(rays.size());
-    for (const std::uint64_t key : keys) rays_.push_back(rays[key & 0xffffffffU]);
-  }
-
   std::vector<std::size_t> begins_;
   std::vector<Ray> rays_;
 };
@@ -243,8 +247,9 @@ LaserScan CutToScan(const CloudPoints& points_in_level, const Eigen::Vector3d& l
                     const WallBand& band, float max_range) {
   const Eigen::Vector3f lidar = lidar_in_level.cast<float>();
   const std::vector<float> directions = Directions(points_in_level, lidar);
-  const std::size_t beams = FinestBeams(directions);
-  const Sweep sweep(points_in_level, lidar, directions, beams);
+  const Beams by_rays = FinestBeams(directions);
+  const std::size_t beams = by_rays.count;
+  const Sweep sweep(points_in_level, lidar, directions, by_rays);
   const float lidar_height = lidar.z();
 
   std::vector<float> nearest(beams);
@@ -262,7 +267,7 @@ LaserScan CutToScan(const CloudPoints& points_in_level, const Eigen::Vector3d& l
       return std::isfinite(step) ? step : 0.0F;
     };
     const float recedes = std::max(step_to((i + 1) % beams), step_to((i + beams - 1) % beams));
-    const float wall = sweep.At(i, lidar_height, band).Wall(recedes);
+    const float wall = sweep.At(i, lidar_height, band).Wall(nearest[i], recedes);
     scan.ranges[i] = wall < max_range ? wall : kInvalidRange;
   }
   return scan;

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -40,11 +39,17 @@ class VoxelSet {
   }
 
  private:
+  // The library's own is a call where the processor need not be able to.
+  static std::int64_t Floor(float value) {
+    const auto whole = static_cast<std::int64_t>(value);
+    return whole - (static_cast<float>(whole) > value ? 1 : 0);
+  }
+
   std::uint64_t CellOf(const Eigen::Vector3f& point) const {
     constexpr std::uint64_t kBits = 21;
     std::uint64_t cell = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto index = static_cast<std::int64_t>(std::floor(point(axis) / voxel_));
+      const auto index = Floor(point(axis) / voxel_);
       cell = cell << kBits | (static_cast<std::uint64_t>(index) & ((1U << kBits) - 1));
     }
     return cell;
