@@ -12,7 +12,10 @@ constexpr std::size_t kBatchesAhead = 4;
 
 }  // namespace
 
-BagAhead::BagAhead(RosBag* bag) : bag_(*bag), connections_(bag->Connections()) { Start(); }
+BagAhead::BagAhead(RosBag* bag, IsCloud is_cloud)
+    : bag_(*bag), is_cloud_(std::move(is_cloud)), connections_(bag->Connections()) {
+  Start();
+}
 
 void BagAhead::Start() {
   batch_ = {};
@@ -32,13 +35,21 @@ void BagAhead::Start() {
 
 bool BagAhead::Fill(Batch* batch) {
   bool more = true;
-  while (batch->bytes.size() < kBatchBytes && batch->messages.size() < kBatchMessages) {
-    const std::optional<BagMessage> message = bag_.Next();
+  std::size_t bytes = 0;
+  while (bytes < kBatchBytes && batch->messages.size() < kBatchMessages) {
+    std::optional<BagMessage> message = bag_.Next();
     more = message.has_value();
     if (!more) break;
-    batch->messages.push_back(*message);
+    bytes += message->size;
     batch->begins.push_back(batch->bytes.size());
-    batch->bytes.insert(batch->bytes.end(), message->data, message->data + message->size);
+    if (is_cloud_ && is_cloud_(message->connection)) {
+      auto cloud = ParsePointCloud(message->data, message->size, message->encoding);
+      if (cloud) message->cloud = std::make_shared<RosPointCloud>(std::move(*cloud));
+    }
+    if (!message->cloud) {
+      batch->bytes.insert(batch->bytes.end(), message->data, message->data + message->size);
+    }
+    batch->messages.push_back(std::move(*message));
   }
   batch->truncated = bag_.Truncated();
   batch->damaged = bag_.Damaged();
@@ -54,8 +65,8 @@ std::optional<BagMessage> BagAhead::Next() {
     batch_ = std::move(*batch);
     next_ = 0;
   }
-  BagMessage message = batch_.messages[next_];
-  message.data = batch_.bytes.data() + batch_.begins[next_];
+  BagMessage message = std::move(batch_.messages[next_]);
+  message.data = message.cloud ? nullptr : batch_.bytes.data() + batch_.begins[next_];
   ++next_;
   return message;
 }

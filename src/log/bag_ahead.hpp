@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The messages of a bag, read and unpacked in a thread of their own a little ahead of whoever takes
-// them: to unpack clouds takes as long as to make something of them. What is handed out does not
-// depend on the threads' timing.
+// them, and clouds parsed where they lie: that takes as long as to make something of them. What is
+// handed out does not depend on the threads' timing.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,8 +20,11 @@ namespace masked_mapper {
 
 class BagAhead final : public RosBag {
  public:
-  /// `bag` knows its connections, and is this one's alone as long as this lives.
-  explicit BagAhead(RosBag* bag);
+  using IsCloud = std::function<bool(std::uint32_t connection)>;
+
+  /// `bag` knows its connections, and is this one's alone as long as this lives. `is_cloud`, which
+  /// the thread asks: whether the messages of a connection are clouds that are read.
+  explicit BagAhead(RosBag* bag, IsCloud is_cloud = {});
 
   /// Throws what the bag threw.
   std::optional<BagMessage> Next() override;
@@ -37,7 +42,8 @@ class BagAhead final : public RosBag {
  private:
   /// Messages, and the state of the bag as of behind them.
   struct Batch {
-    std::vector<BagMessage> messages;  ///< without their data, which lies in `bytes`
+    std::vector<BagMessage> messages;  ///< without their data
+    /// Where that begins in `bytes`, of messages whose cloud was not parsed.
     std::vector<std::size_t> begins;
     std::vector<unsigned char> bytes;
     bool truncated = false;
@@ -51,6 +57,7 @@ class BagAhead final : public RosBag {
   bool Fill(Batch* batch);
 
   RosBag& bag_;
+  IsCloud is_cloud_;
   std::map<std::uint32_t, BagConnection> connections_;
   Batch batch_;
   std::size_t next_ = 0;

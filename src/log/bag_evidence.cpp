@@ -69,13 +69,15 @@ void BagEvidence::Add(std::size_t stream, double time, const RosLaserScan& scan)
 }
 
 void BagEvidence::Add(std::size_t stream, double time, const RosPointCloud& cloud) {
-  double farthest = kLeastReach;
-  double nearest = std::numeric_limits<double>::infinity();
+  float least = std::numeric_limits<float>::infinity();  // m^2
+  float most = 0.0F;
   for (const CloudPoint& point : cloud.points) {
-    const double range = point.position.norm();
-    farthest = std::max(farthest, range);
-    nearest = std::min(nearest, range);
+    const float square = point.position.squaredNorm();
+    least = std::min(least, square);
+    most = std::max(most, square);
   }
+  const double nearest = std::sqrt(least);
+  const double farthest = std::max<double>(kLeastReach, std::sqrt(most));
   if (ScannerEvidence* const frame = NoteScanner(stream, time, cloud.header)) {
     frame->AddCloud(cloud.points.size(), nearest);
   }

@@ -154,6 +154,11 @@ std::optional<std::size_t> BagStreams::Find(std::uint32_t connection) {
   return stream;
 }
 
+bool BagStreams::IsCloud(std::uint32_t connection) {
+  const std::optional<std::size_t> stream = Find(connection);
+  return stream && plan_.topics[*stream].kind == TopicKind::kCloud;
+}
+
 bool ReadsOtherwise(const BagPlan& one, const BagPlan& other) {
   constexpr double kSameOffset = 1.0;  // s; nearer, the beginning said as much
   constexpr double kSameMount = 1e-9;
@@ -198,6 +203,7 @@ std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message
     case TopicKind::kMultiEcho:
       return as_message(ParseMultiEchoLaserScan(data, message.size, echo, message.encoding));
     case TopicKind::kCloud:
+      if (message.cloud) return RosMessage(std::move(*message.cloud));
       return as_message(ParsePointCloud(data, message.size, message.encoding));
     case TopicKind::kOdometry:
       return as_message(ParseOdometry(data, message.size, message.encoding));

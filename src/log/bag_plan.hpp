@@ -72,6 +72,8 @@ class BagStreams {
 
   /// Empty when the connection's messages are not read.
   std::optional<std::size_t> Find(std::uint32_t connection);
+  /// Whether they are clouds that are read.
+  bool IsCloud(std::uint32_t connection);
 
  private:
   const BagPlan& plan_;
@@ -86,7 +88,7 @@ bool ReadsOtherwise(const BagPlan& one, const BagPlan& other);
 using RosMessage = std::variant<RosLaserScan, RosPointCloud, RosOdometry, std::vector<RosTransform>,
                                 RosImu, RosFluidPressure>;
 
-/// Empty when the message is malformed.
+/// Empty when the message is malformed. A cloud that was parsed already is taken.
 std::optional<RosMessage> ParseMessage(TopicKind kind, const BagMessage& message,
                                        const LogOptions& options);
 /// What is wrong with a message of which ParseMessage made nothing.

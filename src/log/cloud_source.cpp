@@ -48,8 +48,9 @@ class CloudSource::Impl {
       lidars_.emplace_back(options_, T_robot_lidar, static_cast<float>(plan_.max_range));
     }
     streams_ = std::make_unique<BagStreams>(plan_, *bag_);
-    ahead_.emplace(bag_.get());
-    clouds_.emplace(kCloudsAhead, [this](const auto& sink) { Produce(sink); });
+    ahead_.emplace(bag_.get(), [streams = std::make_shared<BagStreams>(plan_, *bag_)](
+                                   std::uint32_t id) { return streams->IsCloud(id); });
+    clouds_.emplace(kCloudsAhead, [this](const auto\& sink) { Produce(sink); });
   }
 
   std::optional<LevelledCloud> Next() {

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "ros_messages.hpp"
+#include "ros_point_cloud.hpp"
 
 namespace masked_mapper {
 
@@ -24,6 +26,8 @@ struct BagMessage {
   const unsigned char* data = nullptr;  ///< serialised; valid until the next call
   std::size_t size = 0;
   MessageEncoding encoding = MessageEncoding::kRos1;
+  /// Of one that was parsed already: what it says, in place of its data.
+  std::shared_ptr<RosPointCloud> cloud = nullptr;
 };
 
 class RosBag {

@@ -121,7 +121,10 @@ class RosBagPlan final : public LogPlan {
         return sink(std::move(batch));
       };
       std::optional<BagAhead> ahead;
-      if (kept) ahead.emplace(bag.get());
+      BagStreams streams(plan, *bag);
+      if (kept) {
+        ahead.emplace(bag.get(), [&streams](std::uint32_t id) { return streams.IsCloud(id); });
+      }
       RosBag* const read = ahead ? &*ahead : bag.get();
       const bool to_the_end = ReadBag(options, plan, read, evidence.get(), keep);
       ahead.reset();

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "log/cloud_bytes.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -73,6 +75,58 @@ TEST(BagAheadTest, GivesTheMessagesOfTheBagAndItsState) {
     EXPECT_EQ(ahead.Progress(), 1.0);
     ahead.Rewind();
   }
+}
+
+/// A cloud of one point more in each message, but one of them is cut off.
+class CloudBag final : public RosBag {
+ public:
+  explicit CloudBag(std::size_t messages) : messages_(messages) {
+    connections_[5].topic = "/points";
+  }
+  std::optional<BagMessage> Next() override {
+    if (next_ == messages_) return std::nullopt;
+    bytes_ = CloudOf({{"x", 0}, {"y", 4}, {"z", 8}}, 12,
+                     std::vector<std::vector<double>>(++next_, {1.0, 2.0, 3.0}))
+                 .Ros1();
+    if (next_ == kCut) bytes_.pop_back();
+    BagMessage message;
+    message.connection = 5;
+    message.data = reinterpret_cast<const unsigned char*>(bytes_.data());
+    message.size = bytes_.size();
+    return message;
+  }
+  void Rewind() override { next_ = 0; }
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return connections_;
+  }
+  bool IsIndexed() const override { return true; }
+  bool Truncated() const override { return false; }
+  std::uint64_t Damaged() const override { return 0; }
+  double Progress() const override { return 0.0; }
+
+  static constexpr std::size_t kCut = 7;
+
+ private:
+  std::size_t messages_;
+  std::size_t next_ = 0;
+  std::string bytes_;
+  std::map<std::uint32_t, BagConnection> connections_;
+};
+
+TEST(BagAheadTest, ParsesCloudsAndLeavesTheBytesOfThoseThatAreNone) {
+  CloudBag bag(100);
+  BagAhead ahead(&bag, [](std::uint32_t connection) { return connection == 5; });
+  for (std::size_t points = 1; points <= 100; ++points) {
+    const std::optional<BagMessage> message = ahead.Next();
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->cloud == nullptr, points == CloudBag::kCut);
+    if (message->cloud) {
+      EXPECT_EQ(message->cloud->points.size(), points);
+    } else {
+      EXPECT_NE(FaultOfPointCloud(message->data, message->size), "");
+    }
+  }
+  EXPECT_FALSE(ahead.Next());
 }
 
 TEST(BagAheadTest, MayBeLeftInTheMiddle) {
