@@ -8,7 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
+#include "turn_of.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -29,28 +31,30 @@ constexpr float kLeastUpright =
     0.2F;  // m that returns must lie over one another: more than a stair
 constexpr int kStoppedPerPassed = 2;
 
-/// The direction in [0, 1] of a turn, from straight behind; not a number: the ray goes nowhere.
-std::vector<float> Directions(const CloudPoints& points, const Eigen::Vector3f& lidar) {
-  std::vector<float> directions;
-  directions.reserve(points.size());
-  for (const CloudPoint& point : points) {
-    const float x = point.position.x() - lidar.x();
-    const float y = point.position.y() - lidar.y();
-    const bool is_ray = std::abs(x) + std::abs(y) > 0.0F;
-    directions.push_back(is_ray ? std::atan2(y, x) / static_cast<float>(2.0 * kPi) + 0.5F
-                                : kInvalidRange);
+/// Where the rays of a cloud go, over the ground.
+struct Rays {
+  std::vector<float> turns;   ///< in [0, 1] of a turn, from straight behind; no number: nowhere
+  std::vector<float> ranges;  ///< m
+
+  Rays(const CloudPoints& points, const Eigen::Vector3f& lidar)
+      : turns(points.size()), ranges(points.size()) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float x = points[i].position.x() - lidar.x();
+      const float y = points[i].position.y() - lidar.y();
+      turns[i] = TurnOf(y, x);
+      ranges[i] = std::sqrt(x * x + y * y);
+    }
   }
-  return directions;
-}
+};
 
 constexpr std::uint32_t kNoBeam = std::numeric_limits<std::uint32_t>::max();
 
 /// The beam nearest to a place that is counted in beams; the one behind the last is the first.
 std::uint32_t Nearest(float in_beams) { return static_cast<std::uint32_t>(in_beams + 0.5F); }
 
-std::uint32_t BeamOf(float direction, std::size_t beams) {
+std::uint32_t BeamOf(float turn, std::size_t beams) {
   const auto all = static_cast<std::uint32_t>(beams);
-  const std::uint32_t beam = Nearest(direction * static_cast<float>(beams));
+  const std::uint32_t beam = Nearest(turn * static_cast<float>(beams));
   return beam < all ? beam : beam - all;
 }
 
@@ -59,10 +63,10 @@ struct Beams {
   std::size_t count = 0;
   std::vector<std::uint32_t> of_ray;  ///< kNoBeam: it goes nowhere
 
-  Beams(const std::vector<float>& directions, std::size_t beams) : count(beams) {
-    of_ray.reserve(directions.size());
-    for (const float direction : directions) {
-      of_ray.push_back(std::isnan(direction) ? kNoBeam : BeamOf(direction, beams));
+  Beams(const std::vector<float>& turns, std::size_t beams) : count(beams) {
+    of_ray.reserve(turns.size());
+    for (const float turn : turns) {
+      of_ray.push_back(std::isnan(turn) ? kNoBeam : BeamOf(turn, beams));
     }
   }
 
@@ -86,13 +90,13 @@ struct Beams {
 };
 
 /// The finest beams that the rays fill: enough in each, and none between two columns of the lidar.
-Beams FinestBeams(const std::vector<float>& directions) {
+Beams FinestBeams(const std::vector<float>& turns) {
   for (const std::size_t count : kBeams) {
-    if (count * kRaysPerBeam > directions.size()) continue;
-    Beams beams(directions, count);
+    if (count * kRaysPerBeam > turns.size()) continue;
+    Beams beams(turns, count);
     if (beams.AreFilled()) return beams;
   }
-  return {directions, kBeams.back()};
+  return {turns, kBeams.back()};
 }
 
 struct Ray {
@@ -198,8 +202,7 @@ class Beam {
 /// All rays by their beams.
 class Sweep {
  public:
-  Sweep(const CloudPoints& points, const Eigen::Vector3f& lidar,
-        const std::vector<float>& directions, const Beams& beams)
+  Sweep(const CloudPoints& points, const Rays& rays, const Beams& beams)
       : begins_(beams.count + 1, 0) {
     for (const std::uint32_t beam : beams.of_ray) {
       if (beam != kNoBeam) ++begins_[beam + 1];
@@ -211,10 +214,8 @@ class Sweep {
     const auto step = static_cast<float>(2.0 * kPi / static_cast<double>(beams.count));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (beams.of_ray[i] == kNoBeam) continue;
-      const Eigen::Vector3f& position = points[i].position;
-      const float range = (position - lidar).head<2>().norm();
-      const float in_beams = directions[i] * count;
-      rays_[next[beams.of_ray[i]]++] = {range, position.z(),
+      const float in_beams = rays.turns[i] * count;
+      rays_[next[beams.of_ray[i]]++] = {rays.ranges[i], points[i].position.z(),
                                         (in_beams - static_cast<float>(Nearest(in_beams))) * step};
     }
   }
@@ -246,10 +247,10 @@ WallBand BandBetween(const Ground& ground, double lidar_height_m, const WallBand
 LaserScan CutToScan(const CloudPoints& points_in_level, const Eigen::Vector3d& lidar_in_level,
                     const WallBand& band, float max_range) {
   const Eigen::Vector3f lidar = lidar_in_level.cast<float>();
-  const std::vector<float> directions = Directions(points_in_level, lidar);
-  const Beams by_rays = FinestBeams(directions);
+  const Rays rays(points_in_level, lidar);
+  const Beams by_rays = FinestBeams(rays.turns);
   const std::size_t beams = by_rays.count;
-  const Sweep sweep(points_in_level, lidar, directions, by_rays);
+  const Sweep sweep(points_in_level, rays, by_rays);
   const float lidar_height = lidar.z();
 
   std::vector<float> nearest(beams);
