@@ -50,7 +50,7 @@ class CloudSource::Impl {
     streams_ = std::make_unique<BagStreams>(plan_, *bag_);
     ahead_.emplace(bag_.get(), [streams = std::make_shared<BagStreams>(plan_, *bag_)](
                                    std::uint32_t id) { return streams->IsCloud(id); });
-    clouds_.emplace(kCloudsAhead, [this](const auto\& sink) { Produce(sink); });
+    clouds_.emplace(kCloudsAhead, [this](const auto& sink) { Produce(sink); });
   }
 
   std::optional<LevelledCloud> Next() {

@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "masked_mapper/geometry/angle.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
 #include "turn_of.hpp"
 

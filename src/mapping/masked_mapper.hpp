@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "drive_motion.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/checkpoint.hpp"
-#include "drive_motion.hpp"
 #include "masked_mapper/mapping/mapping_options.hpp"
 #include "masked_mapper/masks/mask_registry.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensor/turn_of.hpp"
+#include "log/turn_of.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "masked_mapper/geometry/angle.hpp"
+#include "masked_mapper/geometry/pose2.hpp"
 
 namespace masked_mapper {
 namespace {
