@@ -105,10 +105,11 @@ class Surveyor {
         turns_left_out_(mending.turns_left_out),
         asks_wheels_(options.motion.source == MotionSource::kAuto ||
                      options.motion.source == MotionSource::kFused),
+        believes_wheels_(options.motion.source == MotionSource::kOdometry),
         threads_(options.threads),
         listeners_(options.threads > 1) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
-    if (asks_wheels_) listeners_.Add(&standstill_);
+    if (asks_wheels_ || believes_wheels_) listeners_.Add(&standstill_);
     listeners_.Add(&wheels_);
   }
 
@@ -163,6 +164,12 @@ class Surveyor {
       if (!fault.empty()) survey_.warnings.push_back(fault);
     } else if (survey_.has_odometry && !survey_.odometry_moves) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
+    }
+    if (believes_wheels_ && survey_.odometry_moves) {
+      for (const FalseRest& rest : standstill_.Find()) {
+        survey_.warnings.push_back(InWords(rest) +
+                                   "; the map has only the way by odometry, as motion.source says");
+      }
     }
     SettleSweep();
     survey_.median_travel_m = Median(std::move(travels_));
@@ -229,7 +236,8 @@ class Surveyor {
   SweepCheck sweep_;
   UnbrokenWay unbroken_;
   bool turns_left_out_;
-  bool asks_wheels_;  ///< not where the user settled whom to believe
+  bool asks_wheels_;      ///< not where the user settled whom to believe
+  bool believes_wheels_;  ///< as the user wants it, whatever scans say
   Pose2 T_robot_laser_;
   TimeSpan log_;                        ///< from the first scan to the last
   std::optional<double> stamp_before_;  ///< of the scan before, as all below

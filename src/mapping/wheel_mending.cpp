@@ -24,6 +24,13 @@ std::string SpanText(const TimeSpan& span) {
 
 }  // namespace
 
+std::string InWords(const FalseRest& rest) {
+  return (rest.leap_m > 0.0
+              ? "odometry leaps by " + FixedText(rest.leap_m, 2) + " m at the end of "
+              : "the wheels stand still while the scene moves past the scanner, for ") +
+         SpanText(rest.span);
+}
+
 // One fault hides others: with another clock wheels seem to stand still where they do not, and
 // wheels that are of no use stand still in many ways. So the graver is mended alone, and asked
 // again.
@@ -57,10 +64,7 @@ WheelMending MendingOf(const WheelFault& fault, const std::vector<FalseRest>& re
     return wheels;
   }
   for (const FalseRest& rest : rests) {
-    const std::string fault =
-        rest.leap_m > 0.0 ? "odometry leaps by " + FixedText(rest.leap_m, 2) + " m at the end of "
-                          : "the wheels stand still while the scene moves past the scanner, for ";
-    tell(fault + SpanText(rest.span), {rest.span.Duration(), 0.0}, rest.span,
+    tell(InWords(rest), {rest.span.Duration(), 0.0}, rest.span,
          "scans alone tell the way meanwhile");
     mending.left_out.push_back(rest.span);
   }

@@ -2,6 +2,7 @@
 // What is done about wheels that scans found to lie, and how it is told.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "masked_mapper/log/log_source.hpp"
@@ -16,6 +17,8 @@ struct WheelMending {
   OdometryMending mending;
   std::vector<SensorFinding> findings;
 };
+
+std::string InWords(const FalseRest& rest);
 
 /// `log`: the time of its scans.
 WheelMending MendingOf(const WheelFault& fault, const std::vector<FalseRest>& rests,

@@ -115,6 +115,23 @@ TEST(SurveyLog, LeavesOutWheelsThatStandStillInPassing) {
   }
 }
 
+// Whoever wants the wheels believed gets them, and hears where scans say otherwise.
+TEST(SurveyLog, WarnsOfWheelsThatStandStillWhereTheyAloneAreBelieved) {
+  MappingOptions options;
+  options.motion.source = MotionSource::kOdometry;
+  for (const double frozen_s : {0.0, 10.0}) {
+    const std::string path = FrozenLog("frozen_alone.log", frozen_s);
+    LogSource source(path, {});
+    const LogSurvey survey = SurveyLog(source, options);
+    EXPECT_TRUE(survey.mending.IsNone());
+    ASSERT_EQ(survey.warnings.size(), frozen_s == 0.0 ? 0U : 1U);
+    if (frozen_s > 0.0) {
+      EXPECT_NE(survey.warnings[0].find("10.0 s from 1020.000"), std::string::npos)
+          << survey.warnings[0];
+    }
+  }
+}
+
 TEST(SurveyLog, OfWheelsThatNeverTurnTheWayIsKept) {
   const std::string path = TemporaryLog("no_turns.log");
   const BoxScene room = FurnishedRoom();
