@@ -39,7 +39,8 @@ struct ExportArguments {
   HeightBand heights;
   ClearanceOptions clearance;
   bool keep_frame = false;
-  std::vector<std::string> clouds;
+  bool of_clouds = false;
+  std::vector<std::string> clouds;  ///< their log; none: those that the map keeps
   double voxel_m = 0.05;
   bool keeps_passers_by = false;
   RobotHeights robot;
@@ -132,7 +133,7 @@ int ExportHandover(const ExportArguments& arguments) {
   return 0;
 }
 
-/// What the lidar of the log saw.
+/// What the lidar of the log saw, as the map keeps it or as the log has it.
 int ExportClouds(const ExportArguments& arguments) {
   SpaceRequest request;
   request.format = arguments.format;
@@ -153,10 +154,8 @@ int ExportClouds(const ExportArguments& arguments) {
 }
 
 int RunExport(const ExportArguments& arguments) {
-  if (!arguments.clouds.empty()) return ExportClouds(arguments);
-  if (arguments.format == "las") {
-    throw InputError("export: las is of points in space: give their log with --clouds");
-  }
+  // No other map than one of clouds has points for it.
+  if (arguments.of_clouds || arguments.format == "las") return ExportClouds(arguments);
   if (arguments.format == "all") return ExportAll(arguments);
   if (arguments.format == "nav2" || arguments.format == "rmf") return ExportHandover(arguments);
   SingleExport wanted;
@@ -213,9 +212,10 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
       ->type_name("FILE");
   command
       ->add_option("--clouds", arguments->clouds,
-                   "of octomap, grid, pcd, ply and las: by all that the 3D lidar of this log saw, "
-                   "the one that was mapped; its bags in order")
-      ->type_name("LOG...");
+                   "of octomap, grid, pcd, ply and las: by what the 3D lidar saw, as the map keeps "
+                   "it; with the log that was mapped (its bags in order): by all of it")
+      ->expected(0, -1)
+      ->type_name("[LOG]");
   command->add_option("--voxel", arguments->voxel_m, "of --clouds: one point per so much, m")
       ->check(CLI::Range(0.005, 10.0))
       ->capture_default_str()
@@ -251,7 +251,7 @@ void AddFlags(CLI::App* command, ExportArguments* arguments) {
 
 constexpr const char* kFooter =
     "Formats: octomap (.bt), pcd and ply (walls, coloured per floor), grid (.pgm and .yaml as\n"
-    "map_server has them, of one floor), las (LAS 1.4, with --clouds alone), tum (the pose of\n"
+    "map_server has them, of one floor), las (LAS 1.4, of clouds alone), tum (the pose of\n"
     "every scan), g2o (the pose graph);\n"
     "geojson and svg: floor plans of lines, in metres of the map, one layer per floor.\n"
     "all: everything that `map` writes, into a folder. nav2 and rmf: folders that Nav2 "
@@ -266,8 +266,9 @@ constexpr const char* kFooter =
     "  masked_mapper export out --format svg -o plans.svg\n"
     "  masked_mapper export out --format nav2 -o for_the_robot\n"
     "  masked_mapper export out --format all --edits edits.yaml -o mended\n"
-    "  masked_mapper export out --format las --clouds drive.mcap -o building.las\n"
-    "  masked_mapper export out --format octomap --clouds drive.mcap -o space.bt\n"
+    "  masked_mapper export out --format las -o building.las\n"
+    "  masked_mapper export out --format octomap --clouds -o space.bt\n"
+    "  masked_mapper export out --format pcd --clouds drive.mcap --voxel 0.02 -o fine.pcd\n"
     "  masked_mapper export out --format pcd --zmin -0.5 --zmax 3 -o ground.pcd";
 
 }  // namespace
@@ -278,7 +279,13 @@ void AddExportCommand(CLI::App& program, Run& run) {
       program.add_subcommand("export", "Write a map in one format, from the saved map alone");
   AddFlags(command, arguments.get());
   command->footer(kFooter);
-  command->callback([arguments, &run] { run = [arguments] { return RunExport(*arguments); }; });
+  command->callback([arguments, command, &run] {
+    // Without a log the parser leaves an empty one.
+    arguments->of_clouds = command->count("--clouds") > 0;
+    std::vector<std::string>& logs = arguments->clouds;
+    logs.erase(std::remove(logs.begin(), logs.end(), ""), logs.end());
+    run = [arguments] { return RunExport(*arguments); };
+  });
 }
 
 }  // namespace masked_mapper

@@ -9,6 +9,7 @@
 
 #include "aside_folder.hpp"
 #include "interrupt.hpp"
+#include "masked_mapper/export/kept_clouds.hpp"
 #include "masked_mapper/export/space_export.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/text/input_error.hpp"
@@ -26,19 +27,36 @@ std::optional<SpaceFormat> PointFormat(const std::string& name) {
   return std::nullopt;
 }
 
-/// All clouds of the logs, in their order.
+/// Adds all clouds of the logs, in their order, or all that the map keeps, to each of `spaces`.
+template <typename... Spaces>
 void ReadClouds(const SavedMap& map, const SpaceRequest& request, const std::string& stage,
-                ProgressBar& progress, const std::function<void(const LevelledCloud&)>& take) {
+                ProgressBar& progress, Spaces*... spaces) {
+  const auto add = [&](const auto&... what) {
+    const auto add_to = [&](auto* space) {
+      if (space != nullptr) space->Add(what...);
+    };
+    (add_to(spaces), ...);
+  };
   progress.Stage(stage);
+  if (request.logs.empty()) {
+    std::size_t taken = 0;
+    const std::size_t all = map.result.kept_clouds.size();
+    ForEachKeptCloud(map.result, [&](const LevelledCloud& cloud, std::size_t trajectory_index) {
+      add(cloud, trajectory_index);
+      progress.Progress(static_cast<double>(++taken) / static_cast<double>(all), 0);
+    });
+    return;
+  }
   CloudSource source(request.logs, map.origin.options.mapping.log);
   while (const std::optional<LevelledCloud> cloud = source.Next()) {
-    take(*cloud);
+    add(*cloud);
     progress.Progress(source.Progress(), 0);
   }
 }
 
 void CheckTaken(const SpaceRequest& request, const CloudCounts& clouds) {
   if (clouds.taken > 0) return;
+  if (request.logs.empty()) throw InputError("the map keeps no cloud of what is asked for");
   throw InputError(request.logs.front() + ": none of its clouds is of this map (" +
                    std::to_string(clouds.unknown) + " have other stamps)");
 }
@@ -58,6 +76,7 @@ SpaceOccupancyOptions RaysBetweenPoints(const SavedMap& map, const SpaceRequest&
   options.max_range_m = points.max_range_m;
   options.floor = points.floor;
   options.memory_mib = request.memory_mib;
+  if (request.logs.empty()) options.spacing = kSpacingOfKept;
   return options;
 }
 
@@ -65,21 +84,18 @@ Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::
                     ProgressBar& progress) {
   SpaceExportOptions options;
   options.voxel_m = request.voxel_m;
+  if (request.logs.empty()) options.spacing = kSpacingOfKept;
   options.max_range_m = map.origin.options.grid.max_usable_range_m;
   options.floor = request.floor;
   options.heights = request.heights;
   SpaceExport space(map.result, options);
   std::optional<SpaceOccupancy> rays;
   if (!request.keeps_passers_by) rays.emplace(map.result, RaysBetweenPoints(map, request, options));
-  ReadClouds(map, request, "placing clouds", progress, [&](const LevelledCloud& cloud) {
-    space.Add(cloud);
-    if (rays) rays->Add(cloud);
-  });
+  ReadClouds(map, request, "placing clouds", progress, &space, rays ? &*rays : nullptr);
   CheckTaken(request, space.clouds());
   const std::string remark = std::to_string(space.clouds().taken) + " clouds";
   while (rays && rays->Finish()) {
-    ReadClouds(map, request, "casting rays of other floors", progress,
-               [&](const LevelledCloud& cloud) { rays->Add(cloud); });
+    ReadClouds(map, request, "casting rays of other floors", progress, &*rays);
   }
   progress.Stage("writing");
   const std::string name = fs::path(request.file).filename();
@@ -96,20 +112,21 @@ Written WriteOccupancy(const SavedMap& map, const SpaceRequest& request, const f
   options.floor = request.floor;
   options.heights = request.heights;
   options.memory_mib = request.memory_mib;
+  if (request.logs.empty()) options.spacing = kSpacingOfKept;
   SpaceOccupancy space(map.result, options);
   std::size_t clouds = 0;
   std::size_t passes = 0;
   do {
     ++passes;
     ReadClouds(map, request, passes > 1 ? "casting rays of other floors" : "casting rays", progress,
-               [&](const LevelledCloud& cloud) { space.Add(cloud); });
+               &space);
     if (passes == 1) CheckTaken(request, space.clouds());
     if (passes == 1) clouds = space.clouds().taken;
   } while (space.Finish());
   progress.Stage("writing");
-  const std::string remark = std::to_string(clouds) + " clouds, " +
-                             std::to_string(std::lround(space.peak_mib())) + " MiB of voxels" +
-                             (passes > 1 ? ", log read " + std::to_string(passes) + " times" : "");
+  const std::string remark =
+      std::to_string(clouds) + " clouds, " + std::to_string(std::lround(space.peak_mib())) +
+      " MiB of voxels" + (passes > 1 ? ", clouds read " + std::to_string(passes) + " times" : "");
   fs::path name = fs::path(request.file).filename();
   if (request.format == "octomap") {
     space.WriteOctree(folder / name);
@@ -141,6 +158,9 @@ void CheckSpaceRequest(const SpaceRequest& request) {
 
 int ExportSpace(const SavedMap& map, const SpaceRequest& wanted) {
   SpaceRequest request = wanted;
+  if (request.logs.empty() && map.result.kept_clouds.empty()) {
+    throw InputError("the map keeps no clouds: give their log, with --clouds LOG");
+  }
   const std::vector<Floor>& floors = map.result.graph.floors();
   if (request.format == "grid" && !request.floor) {
     if (floors.size() != 1) {

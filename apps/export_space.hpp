@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// masked_mapper export --clouds LOG: what a 3D lidar saw, read from the log once more.
+// masked_mapper export --clouds: what a 3D lidar saw, as the map keeps it, or read from the log
+// once more.
 #pragma once
 
 #include <optional>
@@ -14,8 +15,9 @@ namespace masked_mapper {
 struct SpaceRequest {
   std::string format;
   std::string file;
-  std::vector<std::string> logs;  ///< bags of one recording, in its order
-  double voxel_m = 0.05;          ///< of points
+  std::vector<std::string>
+      logs;               ///< bags of one recording, in its order; none: the map's own clouds
+  double voxel_m = 0.05;  ///< of points
   bool keeps_passers_by = false;  ///< points where later rays saw through
   std::optional<FloorId> floor;   ///< empty: all
   HeightBand heights;             ///< in world

@@ -28,6 +28,8 @@ struct MapFacts {
   double duration_s = 0.0;
   double path_length_m = 0.0;  ///< along the optimised trajectory, floors by their plan alone
   std::uint64_t kept_scans = 0;
+  std::uint64_t kept_clouds = 0;
+  std::uint64_t cloud_bytes = 0;
   std::vector<std::pair<std::string, std::uint64_t>> edges;   ///< by kind
   std::vector<std::pair<std::string, std::uint64_t>> states;  ///< of attempts
   NamedValues changed;                                        ///< options that are not the default
@@ -48,6 +50,8 @@ MapFacts FactsOf(const std::string& out_or_map) {
     facts.path_length_m += Distance(trajectory[i - 1].T_world_robot, trajectory[i].T_world_robot);
   }
   facts.kept_scans = result.kept_scans.size();
+  facts.kept_clouds = result.kept_clouds.size();
+  for (const KeptCloud& kept : result.kept_clouds) facts.cloud_bytes += kept.packed->size();
   for (const char* kind : NamesOf(EdgeKind{})) facts.edges.emplace_back(kind, 0);
   for (const Edge& edge : result.graph.edges()) {
     ++facts.edges[static_cast<std::size_t>(edge.kind)].second;
@@ -78,6 +82,10 @@ void PrintText(const MapFacts& facts) {
   line("duration", FixedText(facts.duration_s, 1) + " s");
   line("path", FixedText(facts.path_length_m, 1) + " m, " + std::to_string(summary.counts.scans) +
                    " scans, " + std::to_string(facts.kept_scans) + " of them kept");
+  if (facts.kept_clouds > 0) {
+    line("clouds", std::to_string(facts.kept_clouds) + " kept, " +
+                       FixedText(static_cast<double>(facts.cloud_bytes) / (1 << 20), 1) + " MiB");
+  }
   line("nodes", std::to_string(summary.counts.nodes) + ", " +
                     std::to_string(summary.counts.scan_nodes) + " with a scan");
   std::string edges;
@@ -136,6 +144,7 @@ void PrintJson(const MapFacts& facts) {
                 {{"observations", summary.counts.observations},
                  {"scans", summary.counts.scans},
                  {"kept_scans", facts.kept_scans},
+                 {"kept_clouds", facts.kept_clouds},
                  {"nodes", summary.counts.nodes},
                  {"scan_nodes", summary.counts.scan_nodes},
                  {"odometry_nodes", summary.counts.odometry_nodes},

@@ -27,7 +27,14 @@ const TrajectoryPose* CloudPoses::Take(double log_stamp) {
     ++counts_.unknown;
     return nullptr;
   }
-  const TrajectoryPose& pose = map_.trajectory[known->second];
+  return TakeIfApart(map_.trajectory[known->second]);
+}
+
+const TrajectoryPose* CloudPoses::TakeAt(std::size_t trajectory_index) {
+  return TakeIfApart(map_.trajectory[trajectory_index]);
+}
+
+const TrajectoryPose* CloudPoses::TakeIfApart(const TrajectoryPose& pose) {
   if (pose.in_transit || (floor_ && *floor_ != pose.floor)) return nullptr;
   if (last_ != nullptr && last_->floor == pose.floor) {
     const double turned = WrapAngle(pose.T_world_robot.theta - last_->T_world_robot.theta);

@@ -20,12 +20,16 @@ class CloudPoses {
   /// For clouds in the log's order, by LevelledCloud::log_stamp. Null: the map has no such scan, it
   /// was taken between floors, or too near the last.
   const TrajectoryPose* Take(double log_stamp);
+  /// The same for clouds that the map keeps, by their place in the trajectory.
+  const TrajectoryPose* TakeAt(std::size_t trajectory_index);
   /// World from the level frame of a cloud; z from the elevation of the pose's floor.
   Eigen::Isometry3d T_world_level(const TrajectoryPose& pose) const;
 
   const CloudCounts& counts() const { return counts_; }
 
  private:
+  const TrajectoryPose* TakeIfApart(const TrajectoryPose& pose);
+
   const BuildingMap& map_;
   CloudSpacing spacing_;
   std::optional<FloorId> floor_;

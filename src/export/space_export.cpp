@@ -15,7 +15,9 @@ class SpaceExport::Impl {
  public:
   Impl(const BuildingMap& map, const SpaceExportOptions& options);
 
-  void Add(const LevelledCloud& cloud);
+  CloudPoses& poses() { return poses_; }
+  /// At a pose of `poses()`; null: nowhere.
+  void Add(const LevelledCloud& cloud, const TrajectoryPose* pose);
   CloudCounts clouds() const { return poses_.counts(); }
   std::size_t voxels() const { return voxels_.size(); }
   std::size_t Write(SpaceFormat format, const std::filesystem::path& path,
@@ -34,8 +36,7 @@ SpaceExport::Impl::Impl(const BuildingMap& map, const SpaceExportOptions& option
       poses_(map, options.spacing, options.floor),
       voxels_(options.voxel_m) {}
 
-void SpaceExport::Impl::Add(const LevelledCloud& cloud) {
-  const TrajectoryPose* const pose = poses_.Take(cloud.log_stamp);
+void SpaceExport::Impl::Add(const LevelledCloud& cloud, const TrajectoryPose* pose) {
   if (pose == nullptr) return;
   const Eigen::Isometry3d T_world_level = poses_.T_world_level(*pose);
   const Eigen::Vector3f lidar = cloud.lidar.cast<float>();
@@ -82,7 +83,12 @@ SpaceExport::SpaceExport(const BuildingMap& map, const SpaceExportOptions& optio
     : impl_(std::make_unique<Impl>(map, options)) {}
 SpaceExport::~SpaceExport() = default;
 
-void SpaceExport::Add(const LevelledCloud& cloud) { impl_->Add(cloud); }
+void SpaceExport::Add(const LevelledCloud& cloud) {
+  impl_->Add(cloud, impl_->poses().Take(cloud.log_stamp));
+}
+void SpaceExport::Add(const LevelledCloud& cloud, std::size_t trajectory_index) {
+  impl_->Add(cloud, impl_->poses().TakeAt(trajectory_index));
+}
 CloudCounts SpaceExport::clouds() const { return impl_->clouds(); }
 std::size_t SpaceExport::voxels() const { return impl_->voxels(); }
 std::size_t SpaceExport::Write(SpaceFormat format, const std::filesystem::path& path,

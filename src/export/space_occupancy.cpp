@@ -27,7 +27,9 @@ class SpaceOccupancy::Impl {
  public:
   Impl(const BuildingMap& map, const SpaceOccupancyOptions& options);
 
-  void Add(const LevelledCloud& cloud);
+  CloudPoses& poses() { return *poses_; }
+  /// At a pose of `poses()`; null: nowhere.
+  void Add(const LevelledCloud& cloud, const TrajectoryPose* pose);
   bool Finish();
   Cell At(FloorId floor, const Eigen::Vector3d& place_in_world) const;
   CloudCounts clouds() const { return poses_->counts(); }
@@ -86,8 +88,7 @@ void SpaceOccupancy::Impl::KeepWithinMemory() {
   }
 }
 
-void SpaceOccupancy::Impl::Add(const LevelledCloud& cloud) {
-  const TrajectoryPose* const pose = poses_->Take(cloud.log_stamp);
+void SpaceOccupancy::Impl::Add(const LevelledCloud& cloud, const TrajectoryPose* pose) {
   if (pose == nullptr) return;
   FloorVotes& floor = floors_[static_cast<std::size_t>(pose->floor)];
   if (floor.is_done || floor.waits) return;
@@ -150,7 +151,12 @@ SpaceOccupancy::SpaceOccupancy(const BuildingMap& map, const SpaceOccupancyOptio
     : impl_(std::make_unique<Impl>(map, options)) {}
 SpaceOccupancy::~SpaceOccupancy() = default;
 
-void SpaceOccupancy::Add(const LevelledCloud& cloud) { impl_->Add(cloud); }
+void SpaceOccupancy::Add(const LevelledCloud& cloud) {
+  impl_->Add(cloud, impl_->poses().Take(cloud.log_stamp));
+}
+void SpaceOccupancy::Add(const LevelledCloud& cloud, std::size_t trajectory_index) {
+  impl_->Add(cloud, impl_->poses().TakeAt(trajectory_index));
+}
 bool SpaceOccupancy::Finish() { return impl_->Finish(); }
 Cell SpaceOccupancy::At(FloorId floor, const Eigen::Vector3d& place_in_world) const {
   return impl_->At(floor, place_in_world);

@@ -107,6 +107,10 @@ class DriveJoiner {
       kept.trajectory_index += poses;
       map_.kept_scans.push_back(std::move(kept));
     }
+    for (KeptCloud& kept : more.kept_clouds) {
+      kept.trajectory_index += poses;
+      map_.kept_clouds.push_back(std::move(kept));
+    }
     for (Drive& drive : more.drives) {
       drive.first_pose += poses;
       drive.first_node += nodes;

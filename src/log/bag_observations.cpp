@@ -13,12 +13,13 @@ constexpr std::size_t kMostOtherTopics = 64;
 }  // namespace
 
 BagObservations::BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag,
-                                 BagEvidence* evidence)
+                                 BagEvidence* evidence, CloudsKept clouds)
     : options_(options),
       plan_(plan),
       bag_(bag),
       evidence_(evidence),
       streams_(plan, bag),
+      clouds_(clouds),
       in_order_(plan.scanners) {
   statistics_.max_range = plan.max_range;
   for (const Eigen::Isometry3d& T_robot_lidar : plan.T_robot_lidar) {
@@ -103,7 +104,8 @@ void BagObservations::TakeMessage(std::size_t stream, double time, RosPointCloud
   if (!IsOfFrame(stream, cloud.header)) return;
   const double stamp = plan_.StampOf(stream, time, cloud.header.stamp);
   CloudScanner& lidar = lidars_[plan_.topics[stream].scanner];
-  mender_.Add(lidar.Cut(std::move(cloud), stamp, motion_), stream);
+  std::vector<StampedCloud>* const keep = clouds_ == CloudsKept::kNone ? nullptr : &kept_clouds_;
+  mender_.Add(lidar.Cut(std::move(cloud), stamp, motion_, keep), stream);
 }
 
 void BagObservations::AddOdometry(std::size_t stream, const OdometryReading& reading) {

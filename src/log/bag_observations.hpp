@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag_evidence.hpp"
@@ -52,11 +53,14 @@ class InOrder {
   std::deque<std::optional<Observation>> waiting_;
 };
 
+/// Whether clouds are kept beside the scans that are cut from them.
+enum class CloudsKept { kNone, kWhereTheRobotWentOn };
+
 class BagObservations {
  public:
   /// All must outlive it. With `evidence`, what is read is noted there.
   BagObservations(const LogOptions& options, const BagPlan& plan, const RosBag& bag,
-                  BagEvidence* evidence = nullptr);
+                  BagEvidence* evidence = nullptr, CloudsKept clouds = CloudsKept::kNone);
 
   void Add(const BagMessage& message);
   /// No more will come.
@@ -64,6 +68,8 @@ class BagObservations {
   /// The next observation that is ready.
   std::optional<Observation> Next();
   LogStatistics Statistics() const;
+  /// Those that were worth keeping since it was asked last.
+  std::vector<StampedCloud> TakeClouds() { return std::exchange(kept_clouds_, {}); }
 
  private:
   /// From the mender to the odometry to the order of what is handed out.
@@ -88,6 +94,8 @@ class BagObservations {
   const RosBag& bag_;
   BagEvidence* evidence_;
   BagStreams streams_;
+  CloudsKept clouds_;
+  std::vector<StampedCloud> kept_clouds_;
   RobotMotion motion_;
   std::vector<CloudScanner> lidars_;  ///< of the scanners
   StampMender mender_;

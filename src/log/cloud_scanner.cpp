@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "virtual_scan.hpp"
 
 namespace masked_mapper {
@@ -12,6 +13,11 @@ namespace {
 constexpr double kRemembered = 3.0;      // s
 constexpr double kSilent = 1.0;          // s without odometry: nobody knows how the robot went on
 constexpr double kGravitySettles = 2.0;  // s; a robot brakes in less
+
+// From one cloud that is kept to the next: as far as an octree takes them.
+constexpr double kTravelToNext = 0.3;     // m
+constexpr double kTurnToNext_deg = 20.0;  // or so much of a turn
+constexpr double kTimeToNext = 0.5;       // s, or, where no wheels tell either, so long
 
 }  // namespace
 
@@ -43,12 +49,13 @@ Pose2 RobotMotion::At(double stamp) const {
                      (stamp - before->first) / (after->first - before->first));
 }
 
+bool RobotMotion::Tells(double from, double to) const {
+  return odometry_.size() >= 2 && std::min(from, to) >= odometry_.front().first - kSilent &&
+         std::max(from, to) <= odometry_.back().first + kSilent;
+}
+
 Pose2 RobotMotion::Between(double from, double to) const {
-  if (odometry_.size() < 2) return {};
-  const double begin = std::min(from, to);
-  const double end = std::max(from, to);
-  if (begin < odometry_.front().first - kSilent || end > odometry_.back().first + kSilent)
-    return {};
+  if (!Tells(from, to)) return {};
   return masked_mapper::Between(At(from), At(to));
 }
 
@@ -59,6 +66,20 @@ std::optional<Eigen::Vector3d> RobotMotion::Up() const {
   constexpr double kUpright = 0.7;
   if (up.z() < kUpright) return std::nullopt;
   return up;
+}
+
+bool KeptPlaces::IsNext(double stamp, const RobotMotion& motion) {
+  const bool is_first = !stamp_;
+  const bool is_told = stamp_ && motion.Tells(*stamp_, stamp);
+  if (is_told) since_kept_ = since_kept_ * motion.Between(*stamp_, stamp);
+  stamp_ = stamp;
+  const bool went_on = std::hypot(since_kept_.x, since_kept_.y) >= kTravelToNext ||
+                       std::abs(since_kept_.theta) >= DegToRad(kTurnToNext_deg);
+  const bool may_have = !is_told && std::abs(stamp - kept_at_) >= kTimeToNext;
+  if (!is_first && !went_on && !may_have) return false;
+  kept_at_ = stamp;
+  since_kept_ = Pose2{};
+  return true;
 }
 
 CloudScanner::CloudScanner(const LogOptions& options, const Eigen::Isometry3d& T_robot_lidar,
@@ -87,13 +108,17 @@ LevelledCloud CloudScanner::Level(RosPointCloud cloud, double stamp, const Robot
   return levelled;
 }
 
-LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion) {
+LaserScan CloudScanner::Cut(RosPointCloud cloud, double stamp, const RobotMotion& motion,
+                            std::vector<StampedCloud>* keep) {
   const LevelledCloud levelled = Level(std::move(cloud), stamp, motion);
   const WallBand band = BandBetween(ground_, levelled.lidar.z(), {});
   LaserScan scan = CutToScan(levelled.points, levelled.lidar, band, max_range_);
   scan.stamp = stamp;
   scan.log_stamp = levelled.log_stamp;
   if (!options_.read_ranges) scan.ranges.clear();
+  if (keep != nullptr && places_.IsNext(stamp, motion)) {
+    keep->push_back({levelled.log_stamp, std::make_shared<const std::string>(PackCloud(levelled))});
+  }
   return scan;
 }
 

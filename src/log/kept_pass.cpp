@@ -3,9 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -137,10 +139,20 @@ void KeptPass::Add(const ObservationBatch& batch) {
   statistics_ = batch.statistics;
 }
 
+void KeptPass::AddClouds(std::vector<StampedCloud> clouds) {
+  std::move(clouds.begin(), clouds.end(), std::back_inserter(clouds_));
+}
+
 void KeptPass::Finish() {
-  if (!file_ || std::fflush(file_.get()) != 0) return;
+  const bool is_there = file_ && std::fflush(file_.get()) == 0;
   const std::lock_guard<std::mutex> lock(mutex_);
-  is_whole_ = true;
+  has_ended_ = true;
+  is_whole_ = is_there;
+}
+
+std::vector<StampedCloud> KeptPass::Clouds() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return has_ended_ ? clouds_ : std::vector<StampedCloud>();
 }
 
 bool KeptPass::IsWhole() const {

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <vector>
 
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "read_ahead.hpp"
 
 namespace masked_mapper {
@@ -24,10 +25,14 @@ class KeptPass {
 
   /// The batches of one pass, in order.
   void Add(const ObservationBatch& batch);
+  /// Clouds that the pass kept, which stay in memory.
+  void AddClouds(std::vector<StampedCloud> clouds);
   /// The pass went to the end of the log.
   void Finish();
   /// Whether all of a pass is here. From then on it may be replayed, also by several at once.
   bool IsWhole() const;
+  /// In order; none before the end of the pass.
+  std::vector<StampedCloud> Clouds() const;
 
   /// Hands the batches out as the pass did, all with its statistics at the end; ends early when the
   /// sink wants no more. Throws std::runtime_error: the file cannot be read any more.
@@ -48,7 +53,9 @@ class KeptPass {
   std::vector<Place> places_;
   std::uint64_t end_ = 0;     ///< bytes
   LogStatistics statistics_;  ///< as of the last batch
+  std::vector<StampedCloud> clouds_;
   mutable std::mutex mutex_;
+  bool has_ended_ = false;
   bool is_whole_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
 
 namespace masked_mapper {
@@ -20,6 +21,11 @@ class LogPlan {
   /// Behind a pass to the end: whether all of the log says otherwise than its beginning did, so
   /// that what was read is to be read again.
   virtual bool Reconsider() { return false; }
+
+  /// Passes from now on keep some of the clouds that they cut scans from.
+  virtual void KeepClouds() {}
+  /// Those of the last pass, once it was read to its end.
+  virtual std::vector<StampedCloud> KeptClouds() const { return {}; }
 
   /// What was found out of the sensors, as far as the log was read.
   virtual std::vector<SensorFinding> Findings() const { return {}; }

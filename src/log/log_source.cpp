@@ -79,6 +79,10 @@ std::unique_ptr<LogReader> LogSource::Read() const {
 
 bool LogSource::Reconsider() { return plan_->Reconsider(); }
 
+void LogSource::KeepClouds() { plan_->KeepClouds(); }
+
+std::vector<StampedCloud> LogSource::KeptClouds() const { return plan_->KeptClouds(); }
+
 std::vector<SensorFinding> LogSource::Findings() const { return plan_->Findings(); }
 
 }  // namespace masked_mapper

@@ -45,10 +45,11 @@ class BagShelf {
   std::unique_ptr<RosBag> bag_;
 };
 
-/// False when nobody wanted the rest.
+/// False when nobody wanted the rest. `clouds`, unless null, keeps them.
 bool ReadBag(const LogOptions& options, const BagPlan& plan, RosBag* bag, BagEvidence* evidence,
-             const ReadAhead::Sink& sink) {
-  BagObservations reader(options, plan, *bag, evidence);
+             KeptPass* clouds, const ReadAhead::Sink& sink) {
+  BagObservations reader(options, plan, *bag, evidence,
+                         clouds == nullptr ? CloudsKept::kNone : CloudsKept::kWhereTheRobotWentOn);
   ObservationBatch batch;
   std::size_t messages = 0;
   bool more = true;
@@ -60,6 +61,7 @@ bool ReadBag(const LogOptions& options, const BagPlan& plan, RosBag* bag, BagEvi
     while (std::optional<Observation> observation = reader.Next()) {
       batch.observations.push_back(std::move(*observation));
     }
+    if (clouds != nullptr) clouds->AddClouds(reader.TakeClouds());
     const bool full = batch.observations.size() >= ObservationBatch::kSize ||
                       ++messages % (8 * ObservationBatch::kSize) == 0;
     if (!full && more) continue;
@@ -111,7 +113,7 @@ class RosBagPlan final : public LogPlan {
     }
     kept_ = HasClouds() ? std::make_shared<KeptPass>() : nullptr;
     const auto pass = [options = options_, plan = plan_, topics = topics_, shelf = shelf_,
-                       kept = kept_,
+                       kept = kept_, keeps_clouds = keeps_clouds_,
                        whole = is_settled_ ? nullptr : whole_](const ReadAhead::Sink& sink) {
       std::unique_ptr<RosBag> bag = shelf->Take();
       std::unique_ptr<BagEvidence> evidence;
@@ -126,7 +128,8 @@ class RosBagPlan final : public LogPlan {
         ahead.emplace(bag.get(), [&streams](std::uint32_t id) { return streams.IsCloud(id); });
       }
       RosBag* const read = ahead ? &*ahead : bag.get();
-      const bool to_the_end = ReadBag(options, plan, read, evidence.get(), keep);
+      const bool to_the_end =
+          ReadBag(options, plan, read, evidence.get(), keeps_clouds ? kept.get() : nullptr, keep);
       ahead.reset();
       if (kept && to_the_end) kept->Finish();
       shelf->PutBack(std::move(bag));
@@ -135,6 +138,11 @@ class RosBagPlan final : public LogPlan {
       whole->evidence = std::move(evidence);
     };
     return std::make_unique<ReadAhead>(statistics, pass);
+  }
+
+  void KeepClouds() override { keeps_clouds_ = true; }
+  std::vector<StampedCloud> KeptClouds() const override {
+    return kept_ ? kept_->Clouds() : std::vector<StampedCloud>();
   }
 
   bool Reconsider() override {
@@ -187,6 +195,7 @@ class RosBagPlan final : public LogPlan {
   BagPlan topics_;
   BagPlan plan_;
   bool is_settled_ = false;
+  bool keeps_clouds_ = false;
   std::vector<SensorFinding> findings_;
 };
 

@@ -44,7 +44,7 @@ SavedMap ReadMapFile(const std::filesystem::path& path) {
     }
     if (version < 1) throw DatabaseError("it has no version");
     CheckSeal(database, version);
-    if (version == kMapVersion) return ReadTables(database, version, size);
+    if (version >= kMapVersionWithoutClouds) return ReadTables(database, version, size);
     Database upgraded = Database::CopyInMemory(database);
     Upgrade(upgraded, version);
     return ReadTables(upgraded, version, size);

@@ -202,6 +202,14 @@ void WriteScans(const std::vector<KeptScan>& kept_scans, int threads, const Data
   }
 }
 
+void WriteClouds(const std::vector<KeptCloud>& kept_clouds, const Database& database) {
+  Statement insert(database, "INSERT INTO clouds VALUES (?,?,?)");
+  for (std::size_t i = 0; i < kept_clouds.size(); ++i) {
+    insert.Bind(Id(i)).Bind(Id(kept_clouds[i].trajectory_index));
+    insert.BindBlob(*kept_clouds[i].packed).Put();
+  }
+}
+
 void WriteTransits(const std::vector<TransitRecord>& transits, const Database& database) {
   Statement insert(database, "INSERT INTO transits VALUES (?,?,?,?,?,?,?)");
   for (std::size_t i = 0; i < transits.size(); ++i) {
@@ -235,7 +243,10 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     database.Run("PRAGMA synchronous = OFF");
     database.Run("PRAGMA secure_delete = ON");  // what is free holds nothing
     Transaction transaction(database);
-    MakeTables(database);
+    // What has no clouds is for older programs, too.
+    const std::int64_t version =
+        result.kept_clouds.empty() ? kMapVersionWithoutClouds : kMapVersion;
+    MakeTables(database, version);
     WriteOrigin(origin, result, database);
     WriteLog(result, database);
     WriteNodes(result.graph, database);
@@ -247,6 +258,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     WriteTransits(result.transits, database);
     WriteDrives(result.drives, database);
     WriteAnnotations(result, database);
+    if (version > kMapVersionWithoutClouds) WriteClouds(result.kept_clouds, database);
     Seal(database);
     transaction.Commit();
   } catch (const DatabaseError& error) {

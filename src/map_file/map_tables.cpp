@@ -15,6 +15,7 @@
 #include "masked_mapper/map/drives.hpp"
 #include "packed_bytes.hpp"
 #include "row_values.hpp"
+#include "schema.hpp"
 #include "stored_options.hpp"
 
 namespace masked_mapper {
@@ -40,6 +41,7 @@ class Reader {
     ReadDrives();
     ReadLogStamps();
     ReadAnnotations(database_, map_.result);
+    if (version_ > kMapVersionWithoutClouds) ReadClouds();
     return std::move(map_);
   }
 
@@ -259,6 +261,24 @@ class Reader {
       kept.trajectory_index = static_cast<std::size_t>(TakeBelow(rows, poses, "scans", "the pose"));
       kept.scan = TakeScan(rows);
       map_.result.kept_scans.push_back(std::move(kept));
+    }
+  }
+
+  // What is in them is held against their lengths when it is wanted.
+  void ReadClouds() {
+    const std::vector<TrajectoryPose>& poses = map_.result.trajectory;
+    Statement rows(database_, "SELECT * FROM clouds ORDER BY id");
+    while (rows.Next()) {
+      std::vector<KeptCloud>& clouds = map_.result.kept_clouds;
+      TakeId(rows, clouds.size(), "clouds");
+      KeptCloud kept;
+      kept.trajectory_index =
+          static_cast<std::size_t>(TakeBelow(rows, poses.size(), "clouds", "the pose"));
+      if (!clouds.empty() && kept.trajectory_index <= clouds.back().trajectory_index) {
+        Malformed("clouds", "clouds that do not follow each other");
+      }
+      kept.packed = std::make_shared<const std::string>(rows.Blob());
+      clouds.push_back(std::move(kept));
     }
   }
 

@@ -19,7 +19,7 @@ struct Table {
 
 // Every table has a key of its own: rows are read, and their checksums taken, in its order. Numbers
 // are ANY, not REAL: SQLite keeps a whole REAL as an integer, and a zero would lose its sign.
-constexpr std::array<Table, 18> kTables = {{
+constexpr std::array<Table, 19> kTables = {{
     {"run", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"options", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value TEXT NOT NULL"},
     {"log_statistics", "id INTEGER PRIMARY KEY, key TEXT NOT NULL, value ANY NOT NULL"},
@@ -71,6 +71,7 @@ constexpr std::array<Table, 18> kTables = {{
     {"areas",
      "id INTEGER PRIMARY KEY, kind TEXT NOT NULL, floor INTEGER NOT NULL REFERENCES floors(id),"
      " corners BLOB NOT NULL"},
+    {"clouds", "id INTEGER PRIMARY KEY, trajectory_index INTEGER NOT NULL, packed BLOB NOT NULL"},
     {"content",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, row_count INTEGER NOT NULL,"
      " checksum INTEGER NOT NULL"},
@@ -111,6 +112,7 @@ std::vector<Table> TablesOf(std::int64_t version) {
     if (version <= 2 && (name == "log_stamps" || name == "findings")) continue;
     const bool is_of_version_4 = name == "transits" || name == "places" || name == "areas";
     if (version <= 3 && is_of_version_4) continue;
+    if (version <= kMapVersionWithoutClouds && name == "clouds") continue;
     if (version <= 1 && name == "floors") table.columns = kFloorsOfVersion1;
     if (version <= 2 && name == "nodes") table.columns = kNodesOfVersion2;
     if (version <= 2 && name == "edges") table.columns = kEdgesOfVersion2;
@@ -187,17 +189,18 @@ void NoteGivenLabels(Database& database) {
 
 }  // namespace
 
-void MakeTables(Database& database) {
-  for (const Table& table : kTables) database.Run(CreateStatement(table));
+void MakeTables(Database& database, std::int64_t version) {
+  for (const Table& table : TablesOf(version)) database.Run(CreateStatement(table));
   database.Run("PRAGMA application_id = " + std::to_string(kMapApplicationId));
-  database.Run("PRAGMA user_version = " + std::to_string(kMapVersion));
+  database.Run("PRAGMA user_version = " + std::to_string(version));
 }
 
 void Seal(Database& database) {
+  const std::vector<Table> tables = TablesOf(database.Number("PRAGMA user_version"));
   Statement insert(database, "INSERT INTO content VALUES (?,?,?,?)");
-  for (std::size_t i = 0; i + 1 < kTables.size(); ++i) {
-    const RowDigest digest = DigestOf(database, kTables[i].name);
-    insert.Bind(static_cast<std::int64_t>(i)).BindText(kTables[i].name);
+  for (std::size_t i = 0; i + 1 < tables.size(); ++i) {
+    const RowDigest digest = DigestOf(database, tables[i].name);
+    insert.Bind(static_cast<std::int64_t>(i)).BindText(tables[i].name);
     insert.Bind(digest.rows).Bind(std::int64_t{digest.checksum}).Put();
   }
 }

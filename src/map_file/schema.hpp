@@ -10,10 +10,13 @@
 namespace masked_mapper {
 
 constexpr std::int64_t kMapApplicationId = 0x4d6d6170;  // "Mmap"
-constexpr std::int64_t kMapVersion = 4;
+constexpr std::int64_t kMapVersion = 5;
 
-/// Makes the tables of the newest version in an empty database.
-void MakeTables(Database& database);
+/// The newest version that has no table for clouds. Maps without any are written as it.
+constexpr std::int64_t kMapVersionWithoutClouds = 4;
+
+/// Makes the tables of one of these two versions in an empty database.
+void MakeTables(Database& database, std::int64_t version);
 
 /// Says in table `content` how many rows each table has and what their checksum is.
 void Seal(Database& database);
@@ -22,8 +25,8 @@ void Seal(Database& database);
 /// rows. `version` is the file's, between 1 and kMapVersion.
 void CheckSeal(Database& database, std::int64_t version);
 
-/// Adds to the tables of an older version what the newest has in them. Table `attempts`, which
-/// `closures` stands for since version 3, stays as it is.
+/// Adds to the tables of a version before kMapVersionWithoutClouds what that has in them. Table
+/// `attempts`, which `closures` stands for since version 3, stays as it is.
 void Upgrade(Database& database, std::int64_t version);
 
 }  // namespace masked_mapper

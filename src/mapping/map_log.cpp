@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "clouds_at_poses.hpp"
 #include "masked_mapper.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
 #include "masked_mapper/log/log_summary.hpp"
@@ -87,6 +88,7 @@ class LogDrive {
         options_(options),
         progress_(progress),
         checkpoints_(checkpoints) {
+    source_.KeepClouds();
     std::optional<Checkpoint> checkpoint;
     if (checkpoints_ != nullptr) checkpoint = checkpoints_->Load();
     std::string mapper_bytes;
@@ -138,6 +140,7 @@ class LogDrive {
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
     TieVisits(mapper_->options().closures, settled_.floor_joins, result);
+    result.kept_clouds = CloudsAtPoses(source_.KeptClouds(), result.trajectory);
     result.findings = survey_.findings;
     for (const SensorFinding& finding : survey_.findings) {
       result.warnings.push_back(path_ + ": " + TextOf(finding));

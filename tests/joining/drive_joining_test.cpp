@@ -38,10 +38,15 @@ TEST(DriveJoining, OneMapAloneStaysAsItIs) {
 }
 
 TEST(DriveJoining, ADriveFromElsewhereFindsItsPlace) {
-  const BuildingMap first = MapOf(First(), "join_first.log");
-  const BuildingMap second = MapOf(Second(), "join_second.log");
+  BuildingMap first = MapOf(First(), "join_first.log");
+  BuildingMap second = MapOf(Second(), "join_second.log");
+  first.kept_clouds = {{3, std::make_shared<const std::string>("one")}};
+  second.kept_clouds = {{5, std::make_shared<const std::string>("another")}};
   const BuildingMap map = Joined({first, second});
   ASSERT_EQ(map.drives.size(), 2U);
+  ASSERT_EQ(map.kept_clouds.size(), 2U);
+  EXPECT_EQ(*map.kept_clouds[1].packed, "another");
+  EXPECT_EQ(map.kept_clouds[1].trajectory_index, first.trajectory.size() + 5);
   EXPECT_EQ(PiecesOfDrives(map), (std::vector<std::size_t>{0, 0}));
   EXPECT_EQ(map.graph.floors().size(), 1U);
   EXPECT_LT(WorstError(map, 0, First()), 0.3) << "m";

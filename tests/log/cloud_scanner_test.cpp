@@ -14,6 +14,7 @@
 #include "log/bag_drive.hpp"
 #include "log/cloud_bytes.hpp"
 #include "log/open_bag.hpp"
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 #include "sensor/room_cloud.hpp"
 
@@ -181,6 +182,41 @@ TEST(RobotMotionTest, GoesOnAsItWentAndStandsWhereNothingIsTold) {
   EXPECT_NEAR(motion.Between(9.0, 9.25).x, 0.25, 1e-9);
   EXPECT_NEAR(motion.Between(9.9, 10.0).x, 0.1, 1e-9);   // beyond the last reading
   EXPECT_NEAR(motion.Between(20.0, 20.1).x, 0.0, 1e-9);  // long after it
+}
+
+TEST(KeptPlacesTest, CloudsAreKeptWhereTheRobotWentOn) {
+  const auto kept = [](double speed, double rate, bool has_odometry) {
+    RobotMotion motion;
+    KeptPlaces places;
+    int count = 0;
+    for (int i = 0; i < 200; ++i) {  // 20 s
+      const double t = 0.1 * i;
+      if (has_odometry) motion.Add(OdometryReading{t, {speed * t, 0.0, rate * t}});
+      count += places.IsNext(t, motion) ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(kept(0.0, 0.0, true), 1);
+  EXPECT_NEAR(kept(0.5, 0.0, true), 1 + 10.0 / 0.3, 5);
+  EXPECT_NEAR(kept(0.0, 0.5, true), 1 + RadToDeg(10.0) / 20.0, 4);
+  EXPECT_NEAR(kept(0.5, 0.0, false), 40, 2);  // two a second
+}
+
+TEST(KeptPlacesTest, APassKeepsCloudsWhereTheyAreAskedFor) {
+  const TemporaryFile file(".bag", StandingBag(12, false));
+  LogSource source(file.path(), {});
+  bag_drive::ReadSource(source);
+  EXPECT_TRUE(source.KeptClouds().empty());
+  LogSource keeping(file.path(), {});
+  keeping.KeepClouds();
+  const double stamp = bag_drive::ReadSource(keeping).scans.front().log_stamp;
+  const std::vector<StampedCloud> clouds = keeping.KeptClouds();
+  ASSERT_EQ(clouds.size(), 3U);  // without odometry two a second
+  EXPECT_EQ(clouds[0].log_stamp, stamp);
+  const auto cloud = UnpackCloud(*clouds[0].packed);
+  ASSERT_TRUE(cloud);
+  EXPECT_GT(cloud->points.size(), 1000U);
+  EXPECT_NEAR(cloud->lidar.z(), kHeight, 0.05);  // levelled
 }
 
 // The four clouds and the bag are not ours, and looked at where they are.

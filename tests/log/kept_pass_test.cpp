@@ -38,8 +38,12 @@ TEST(KeptPassTest, GivesWhatItWasGiven) {
   kept.Add(first);
   kept.Add({});
   kept.Add(second);
+  kept.AddClouds({{2.0, std::make_shared<const std::string>("a cloud")}});
   EXPECT_FALSE(kept.IsWhole());
+  EXPECT_TRUE(kept.Clouds().empty());
   kept.Finish();
+  ASSERT_EQ(kept.Clouds().size(), 1U);
+  EXPECT_EQ(*kept.Clouds()[0].packed, "a cloud");
   ASSERT_TRUE(kept.IsWhole());
 
   for (int time = 0; time < 2; ++time) {

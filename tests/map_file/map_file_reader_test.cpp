@@ -65,6 +65,28 @@ TEST(MapFileReader, GivesBackWhatWasWritten) {
   EXPECT_EQ(OptionValues(read.origin.options), OptionValues(origin.options));
 }
 
+/// With clouds at two of its poses.
+BuildingMap MapWithClouds() {
+  BuildingMap map = SampleMap();
+  map.kept_clouds = {{1, std::make_shared<const std::string>(std::string("\0 one", 5))},
+                     {4, std::make_shared<const std::string>("another")}};
+  return map;
+}
+
+TEST(MapFileReader, KeepsCloudsAndWithoutAnyIsOfTheVersionBefore) {
+  const TestFolder folder;
+  const auto version = [](const fs::path& path) {
+    return Database(path, OpenMode::kRead).Number("PRAGMA user_version");
+  };
+  WriteMapFile({}, SampleMap(), folder / "without.mmap");
+  EXPECT_EQ(version(folder / "without.mmap"), 4);
+  EXPECT_TRUE(ReadMapFile(folder / "without.mmap").result.kept_clouds.empty());
+  const BuildingMap map = MapWithClouds();
+  WriteMapFile({}, map, folder / "with.mmap");
+  EXPECT_EQ(version(folder / "with.mmap"), 5);
+  EXPECT_TRUE(SameMap(map, ReadMapFile(folder / "with.mmap").result));
+}
+
 TEST(MapFileReader, AMapOfNothingIsAMap) {
   const TestFolder folder;
   WriteMapFile({}, {}, folder / "a.mmap");
@@ -225,6 +247,19 @@ void WriteChanged(const BuildingMap& map, const fs::path& path, const std::strin
   database.Run(change);
   database.Run("DELETE FROM content");
   Seal(database);
+}
+
+TEST(MapFileReader, RefusesCloudsThatDoNotHoldTogether) {
+  const TestFolder folder;
+  int number = 0;
+  for (const char* change :
+       {"UPDATE clouds SET trajectory_index = 8 WHERE id = 1",
+        "UPDATE clouds SET trajectory_index = -1 WHERE id = 0",
+        "UPDATE clouds SET trajectory_index = 4 WHERE id = 0", "DELETE FROM clouds WHERE id = 0"}) {
+    const fs::path path = folder / (std::to_string(number++) + ".mmap");
+    WriteChanged(MapWithClouds(), path, change);
+    EXPECT_NE(Refusal(path).find("table clouds"), std::string::npos) << change;
+  }
 }
 
 TEST(MapFileReader, RefusesDrivesThatDoNotHoldTogether) {

@@ -44,6 +44,10 @@ class MapBytes {
       AddNumber("scan", kept.trajectory_index);
       AddScan(kept.scan);
     }
+    for (const KeptCloud& kept : map.kept_clouds) {
+      AddNumber("cloud", kept.trajectory_index);
+      Add("cloud", *kept.packed);
+    }
     for (const Drive& drive : map.drives) {
       Add("drive", drive.log);
       AddNumber("drive", drive.first_pose);

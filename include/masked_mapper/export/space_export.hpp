@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a 3D lidar saw, in space, at the map's optimised poses and its floors' elevations: as
-// points, and as what is free and what is not. The clouds are those of the log, read once more: the
-// map holds the poses, the log the points.
+// points, and as what is free and what is not. The clouds are those of the log, read once more, or
+// those that the map keeps, which are fewer and thinned.
 #pragma once
 
 #include <Eigen/Core>
@@ -58,6 +58,8 @@ class SpaceOccupancy {
   /// Clouds of the map's log in its order. Throws InputError when one floor alone needs more memory
   /// than there may be.
   void Add(const LevelledCloud& cloud);
+  /// One of those that the map keeps, in their order.
+  void Add(const LevelledCloud& cloud, std::size_t trajectory_index);
   /// After the last cloud of the log: true when floors wait for it to be read once more.
   bool Finish();
 
@@ -100,6 +102,8 @@ class SpaceExport {
   /// Clouds of the map's log in its order. One of a stamp that the map has no pose of, or that was
   /// taken between floors, is left out.
   void Add(const LevelledCloud& cloud);
+  /// One of those that the map keeps, in their order.
+  void Add(const LevelledCloud& cloud, std::size_t trajectory_index);
 
   CloudCounts clouds() const;
   std::size_t voxels() const;

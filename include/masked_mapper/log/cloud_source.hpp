@@ -13,13 +13,6 @@
 
 namespace masked_mapper {
 
-struct LevelledCloud {
-  double log_stamp = 0.0;  ///< s, as TrajectoryPose has it
-  CloudPoints points;      ///< about the robot, whose heading is ahead; z above the floor below it
-  std::optional<double> ceiling_m;                  ///< above that floor, where one is seen
-  Eigen::Vector3d lidar = Eigen::Vector3d::Zero();  ///< m, where the rays come from, same frame
-};
-
 class CloudSource {
  public:
   /// Bags of one recording, in its order. Throws InputError as LogSource does, and where the scans

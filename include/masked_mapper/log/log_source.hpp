@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "masked_mapper/sensor/sensor_finding.hpp"
 
@@ -60,6 +61,11 @@ class LogSource {
   bool Reconsider();
   /// Passes from now on are mended so.
   void Mend(OdometryMending mending) { mending_ = std::move(mending); }
+  /// Passes from now on keep of the clouds that scans are cut from those before which the robot
+  /// went on.
+  void KeepClouds();
+  /// Those of the last pass, once it was read to its end, in order.
+  std::vector<StampedCloud> KeptClouds() const;
   /// What the log says of its own sensors, as far as it was read.
   std::vector<SensorFinding> Findings() const;
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,12 @@ struct TrajectoryPose {
 struct KeptScan {
   std::size_t trajectory_index = 0;  ///< its pose in BuildingMap::trajectory
   LaserScan scan;
+};
+
+/// A cloud kept for what is written in space (thinned by travelled distance).
+struct KeptCloud {
+  std::size_t trajectory_index = 0;           ///< its pose in BuildingMap::trajectory
+  std::shared_ptr<const std::string> packed;  ///< by log/packed_cloud.hpp; never null
 };
 
 struct StageSeconds {
@@ -108,6 +115,7 @@ struct BuildingMap {
   PoseGraph graph;
   std::vector<TrajectoryPose> trajectory;  ///< one per scan of the logs, in order
   std::vector<KeptScan> kept_scans;        ///< in order
+  std::vector<KeptCloud> kept_clouds;      ///< in order; of a 3D lidar
   std::vector<Closure> closures;           ///< every pair that was offered, in order
   std::vector<Drive> drives;               ///< in order; of one log: one
   std::vector<TransitRecord> transits;     ///< of the drives of this run, in order

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "masked_mapper/geometry/pose2.hpp"
@@ -17,6 +18,14 @@ struct CloudPoint {
   float time = 0.0F;  ///< s after the stamp of the cloud, or before
 };
 using CloudPoints = std::vector<CloudPoint>;
+
+/// One sweep, straightened and levelled.
+struct LevelledCloud {
+  double log_stamp = 0.0;  ///< s, as TrajectoryPose has it
+  CloudPoints points;      ///< about the robot, whose heading is ahead; z above the floor below it
+  std::optional<double> ceiling_m;                  ///< above that floor, where one is seen
+  Eigen::Vector3d lidar = Eigen::Vector3d::Zero();  ///< m, where the rays come from, same frame
+};
 
 /// Moves every point of a frame b to a.
 void Move(const Eigen::Isometry3d& T_a_b, CloudPoints* points);
