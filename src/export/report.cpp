@@ -12,6 +12,7 @@
 #include "report_columns.hpp"
 #include "report_floors.hpp"
 #include "report_motion.hpp"
+#include "report_space.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -138,6 +139,7 @@ std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGri
                {"nodes", NodesJson(nodes, T_world_odom)},
                {"edges", EdgesJson(result.graph.edges())},
                {"attempts", ClosuresJson(result.closures, result.graph)}};
+  if (!result.kept_clouds.empty()) json["space"] = SpaceJson(result);
   if (route != nullptr) json["route"] = RouteJson(*route);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -15,12 +15,12 @@
 namespace masked_mapper {
 
 /// What the page draws, as JSON: floors with their walls and free space (`grids`, by FloorId), some
-/// points of the kept scans up to `max_range_m`, the trajectory, nodes, edges and closures, each
-/// pose before (the motion path, placed so that it starts where the map does) and after
-/// optimisation. Long columns are base64 of little-endian numbers; viewer/src/data.js reads them.
-/// However large the building, walls, free space, scans and trajectory are thinned so that the page
-/// stays below 20 MB. Nothing in it depends on time or threads. A `route` is drawn into the map;
-/// null: none.
+/// points of the kept scans up to `max_range_m`, points of the kept clouds, the trajectory, nodes,
+/// edges and closures, each pose before (the motion path, placed so that it starts where the map
+/// does) and after optimisation. Long columns are base64 of little-endian numbers;
+/// viewer/src/data.js reads them. However large the building, walls, free space, scans, clouds and
+/// trajectory are thinned so that the page stays below 20 MB. Nothing in it depends on time or
+/// threads. A `route` is drawn into the map; null: none.
 std::string ReportData(const BuildingMap& result, const std::vector<OccupancyGrid>& grids,
                        double max_range_m, const Route* route = nullptr);
 

@@ -9,6 +9,7 @@
 
 #include "export/sample_map.hpp"
 #include "masked_mapper/export/map_export.hpp"
+#include "masked_mapper/log/packed_cloud.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -68,6 +69,51 @@ TEST(Report, IsOnePageThatAsksForNothing) {
   EXPECT_NE(page.find("MIT License"), std::string::npos) << "licences of the packages";
   EXPECT_FALSE(std::regex_search(page.substr(0, page.find(kDataStart)),
                                  std::regex(R"((src|href)\s*=\s*["'](?!data:))")));
+}
+
+/// A slab of points from one height to another, about the robot.
+std::shared_ptr<const std::string> Slab(float side, float low, float high) {
+  LevelledCloud cloud;
+  CloudPoint point;
+  for (float x = -side; x < side; x += 0.04F) {
+    for (float y = -side; y < side; y += 0.04F) {
+      for (float z = low; z <= high; z += 0.1F) {
+        point.position = {x, y, z};
+        cloud.points.push_back(point);
+      }
+    }
+  }
+  return std::make_shared<const std::string>(PackCloud(cloud));
+}
+
+TEST(Report, PointsOfSpaceAreAboveTheirFloors) {
+  BuildingMap map = SampleMap();
+  EXPECT_EQ(DataOf(map).count("space"), 0U);
+  map.kept_clouds = {{0, Slab(1.0F, 0.5F, 1.0F)}, {7, Slab(1.0F, 0.5F, 1.0F)}};
+  const Json data = DataOf(map);
+  const Json& floors = data.at("space").at("floors");
+  ASSERT_EQ(floors.size(), 2U);
+  for (const Json& floor : floors) {
+    const auto xyz = Column<std::uint16_t>(floor, "xyz_u16");
+    ASSERT_EQ(xyz.size(), 3 * floor.at("count").get<std::size_t>());
+    ASSERT_FALSE(xyz.empty());
+    for (std::size_t i = 2; i < xyz.size(); i += 3) {
+      const double z =
+          floor.at("origin")[2].get<double>() + xyz[i] * floor.at("step_m").get<double>();
+      EXPECT_GT(z, 0.4);  // whatever the floor's elevation
+      EXPECT_LT(z, 1.1);
+    }
+  }
+}
+
+TEST(Report, ManyPointsOfSpaceAreThinned) {
+  BuildingMap map = SampleMap();
+  map.kept_clouds = {{0, Slab(10.0F, 0.2F, 1.4F)}, {6, Slab(10.0F, 0.2F, 1.4F)}};
+  const std::string data = ReportData(map, RenderFloors(map, {}), 30.0);
+  EXPECT_LT(data.size(), 6000000U);
+  const Json space = Json::parse(data).at("space");
+  EXPECT_GT(space.at("voxel_m"), 0.1);
+  EXPECT_GT(space.at("floors")[0].at("count"), 100000);
 }
 
 TEST(Report, NastyTextsStayTexts) {

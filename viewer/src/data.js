@@ -85,6 +85,30 @@ function readAttempts(table, nodes) {
   });
 }
 
+/** Points of a 3D lidar on a floor, z above it; null where the map keeps none. */
+function spaceOf(space, floor) {
+  const points = space?.floors[floor];
+  if (!points?.count) return null;
+  const xyz = Float32Array.from(column(points, 'xyz_u16'), (steps, i) =>
+      points.origin[i % 3] + steps * points.step_m);
+  return {count: points.count, xyz};
+}
+
+/** Of all floors' points: how large each is, and the heights above their floors between which they lie. */
+function aboutSpace(space, floors) {
+  const shown = floors.filter((floor) => floor.space);
+  if (!shown.length) return null;
+  let [lowest, highest] = [Infinity, -Infinity];
+  for (const {space: {xyz}} of shown) {
+    for (let i = 2; i < xyz.length; i += 3) {
+      lowest = Math.min(lowest, xyz[i]);
+      highest = Math.max(highest, xyz[i]);
+    }
+  }
+  return {spacing: space.voxel_m, lowest, highest,
+          count: shown.reduce((sum, floor) => sum + floor.space.count, 0)};
+}
+
 export function readReport(text) {
   const {map, summary} = JSON.parse(text);
   const storey = storeys(map.floors);
@@ -95,6 +119,7 @@ export function readReport(text) {
     nodes: summary.floors[index].nodes,
     walls: {...floor.walls, xy: column(floor.walls, 'xy_u16')},
     free: {...floor.free, bits: bytesOf(floor.free.bits)},
+    space: spaceOf(map.space, index),
   }));
   const nodes = {
     count: map.nodes.count, stamp: column(map.nodes, 'stamp_f64'),
@@ -113,6 +138,7 @@ export function readReport(text) {
   const start = trajectory.count ? trajectory.stamp[0] : nodes.count ? nodes.stamp[0] : 0;
   return {
     floors, nodes, edges, scans, trajectory, start, summary,
+    space: aboutSpace(map.space, floors),
     attempts: readAttempts(map.attempts, nodes),
     route: map.route ?? null,
     doubts: (summary.doubts ?? []).map((doubt) => (

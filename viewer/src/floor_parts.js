@@ -117,6 +117,16 @@ function makeScans(floor, scans) {
   return object;
 }
 
+function makeSpace({space}, origin, material) {
+  if (!space) return null;
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(space.xyz, 3));
+  const points = new THREE.Points(geometry, material);
+  points.position.set(-origin.x, -origin.y, 0);
+  points.frustumCulled = false;
+  return points;
+}
+
 function makeNodes(floor, nodes, withScan) {
   const ids = [];
   for (let i = 0; i < nodes.count; ++i) {
@@ -130,18 +140,19 @@ function makeNodes(floor, nodes, withScan) {
   return {ids, object};
 }
 
-/** All that is drawn of one floor but lines: {group, floor, free, walls, scans, scan_nodes, odometry_nodes}. */
+/** All that is drawn of one floor but lines: {group, floor, free, walls, scans, space, scan_nodes, odometry_nodes}. */
 export function makeFloor(floor, model, origin, materials) {
   const group = new THREE.Group();
   const parts = {group, floor};
   parts.free = makeFree(floor, origin);
   parts.walls = makeWalls(floor, origin);
   parts.scans = makeScans(floor, model.scans);
+  parts.space = makeSpace(floor, origin, materials.space);
   for (const name of ['scan_nodes', 'odometry_nodes']) {
     parts[name] = makeNodes(floor, model.nodes, name === 'scan_nodes');
     parts[name].object.material = materials[name];
   }
-  group.add(...[parts.free, parts.walls, parts.scans].filter(Boolean),
+  group.add(...[parts.free, parts.walls, parts.scans, parts.space].filter(Boolean),
             parts.scan_nodes.object, parts.odometry_nodes.object);
   return parts;
 }

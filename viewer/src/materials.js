@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as THREE from 'three';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
-import {nodeFragment, pointVertex} from './shaders.js';
+import {nodeFragment, pointVertex, spaceFragment, spaceVertex} from './shaders.js';
 import {closureStates} from './states.js';
 
 function cssColour(name) {
@@ -9,7 +9,7 @@ function cssColour(name) {
   return new THREE.Color(text);
 }
 
-export function makeMaterials() {
+export function makeMaterials(space) {
   const line = (width, more) => new LineMaterial({linewidth: width, ...more});
   const materials = {
     trajectory: line(1.4, {transparent: true, opacity: 0.9}),
@@ -28,6 +28,17 @@ export function makeMaterials() {
     },
     vertexShader: pointVertex, fragmentShader: nodeFragment,
   });
+  if (space) {
+    materials.space = new THREE.ShaderMaterial({
+      uniforms: {
+        lowColour: {value: new THREE.Color()}, highColour: {value: new THREE.Color()},
+        pixelsPerMetre: {value: 1}, diameter: {value: space.spacing},
+        band: {value: new THREE.Vector2(space.lowest, space.highest)},
+        reach: {value: new THREE.Vector2(space.lowest, space.highest)},
+      },
+      vertexShader: spaceVertex, fragmentShader: spaceFragment,
+    });
+  }
   materials.scan_nodes = node(0.5, 3.6);
   materials.odometry_nodes = node(0.35, 2.6);
   return materials;
@@ -58,6 +69,10 @@ export function applyColours(materials, floorGroups) {
   };
   for (const [state, look] of Object.entries(closureStates)) colours[state] = look.colour;
   for (const [name, variable] of Object.entries(colours)) materials[name].color = cssColour(variable);
+  if (materials.space) {
+    materials.space.uniforms.lowColour.value = cssColour('--space-low');
+    materials.space.uniforms.highColour.value = cssColour('--space-high');
+  }
   for (const [name, variable] of [['scan_nodes', '--node'], ['odometry_nodes', '--odometry']]) {
     materials[name].uniforms.colour.value = cssColour(variable);
     materials[name].uniforms.rim.value = background;

@@ -16,10 +16,10 @@ function segmented(name, label, options, chosen, onchange) {
       }), text)));
 }
 
-function slider(id, label, {max, step, value, text, onchange}) {
+function slider(id, label, {min = 0, max, step, value, text, onchange}) {
   const output = element('output', {for: id}, text(value));
   return element('div', {class: 'slider'}, element('label', {for: id}, label), output, element('input', {
-    id, type: 'range', min: '0', max: String(max), step: String(step), value: String(value),
+    id, type: 'range', min: String(min), max: String(max), step: String(step), value: String(value),
     'aria-valuetext': text(value),
     oninput: (event) => {
       const now = Number(event.target.value);
@@ -35,6 +35,37 @@ function toggle({id, mark, label, note, more, checked, onchange, none}) {
       element('input', {type: 'checkbox', id, checked, onchange: (event) => onchange(event.target.checked)}),
       mark, element('span', {}, label),
       element('span', {class: 'number quiet'}, note ?? ''), element('span', {class: 'number'}, more ?? '')));
+}
+
+// From what lies about to a hand below the lintel of a door: what is in the way.
+const usualBand = [0.2, 1.9];
+
+/** The heights between which points of space are shown. */
+function bandPart({space}, scene) {
+  if (!space) return null;
+  const step = 0.05;
+  const min = Math.floor(space.lowest / step) * step;
+  const max = Math.ceil(space.highest / step) * step;
+  const within = (height) => Math.min(max, Math.max(min, height));
+  const band = usualBand.map(within);
+  // Neither end passes the other: it takes it along.
+  const put = (end, other, inOrder) => (height) => {
+    band[end] = height;
+    scene?.setBand(...band);
+    const input = inOrder(height, band[other]) ? null : page.querySelector(`#band-${other ? 'high' : 'low'}`);
+    if (!input) return;
+    input.value = String(height);
+    input.dispatchEvent(new Event('input'));
+  };
+  const end = (id, label, index, onchange) => slider(id, label, {
+    min, max, step, value: band[index], text: (height) => metres(height, 2), onchange,
+  });
+  const page = part('Points by height', element('div', {role: 'group', 'aria-label': 'Heights of the points shown, above their floors'},
+      end('band-low', 'From, above the floor', 0, put(0, 1, (low, high) => low <= high)),
+      end('band-high', 'To, above the floor', 1, put(1, 0, (high, low) => low <= high))),
+      element('p', {class: 'below'}, `What the 3D lidar saw, above each floor: one point per ${metres(space.spacing, 2)}.`));
+  scene?.setBand(...band);
+  return page;
 }
 
 export function mapPage(page, model, scene, {blendTo, separation}) {
@@ -82,9 +113,11 @@ export function mapPage(page, model, scene, {blendTo, separation}) {
            segmented('blend', 'Poses shown', [['before', 'Dead reckoning'], ['after', 'Optimised']], 'after', blendTo),
            element('p', {class: 'below'}, `Optimisation moved the nodes by ${metres(mean)} on average, ${metres(largest)} at most.`)),
       floorsPart,
+      bandPart(model, scene) ?? '',
       part('Shown', element('ul', {class: 'toggles'},
           layer('walls', 'Walls', key('area', '--quiet')),
           layer('free', 'Free space', key('area', '--line')),
+          model.space ? layer('space', 'Points of the 3D lidar', key('area', '--space-high'), model.space.count) : null,
           layer('trajectory', 'Trajectory', key('line', '--trajectory')),
           layer('scan_nodes', 'Scan nodes', key('dot', '--node'), scanNodes),
           layer('odometry_nodes', 'Odometry-only nodes', key('dot small', '--odometry'), nodes.count - scanNodes),

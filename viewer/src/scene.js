@@ -35,7 +35,7 @@ export class MapScene {
     container.addEventListener('keydown', (event) => this.onKey(event));
 
     Object.assign(this, centre(model));
-    this.materials = makeMaterials();
+    this.materials = makeMaterials(model.space);
     this.floorGroups = model.floors.map((floor) => makeFloor(floor, model, this.origin, this.materials));
     this.between = new THREE.Group();
     this.scene.add(...this.floorGroups.map(({group}) => group), this.between);
@@ -81,6 +81,7 @@ export class MapScene {
         parts.scans.visible = this.shows('walls') && !optimised;
         parts.scans.material.uniforms.blend.value = this.blend;
       }
+      if (parts.space) parts.space.visible = this.shows('space') && optimised;
       for (const name of ['scan_nodes', 'odometry_nodes']) {
         const {ids, object} = parts[name];
         object.visible = this.shows(name);
@@ -124,6 +125,11 @@ export class MapScene {
   setWallHeight(metres) {
     this.wallHeight = metres;
     this.update();
+  }
+  /** Points of space are shown between two heights above their floors, m. */
+  setBand(low, high) {
+    this.materials.space.uniforms.band.value.set(low, high);
+    this.requestRender();
   }
   setBlend(blend) {
     this.blend = blend;
@@ -245,6 +251,7 @@ export class MapScene {
     for (const {walls} of this.floorGroups) {
       if (walls) walls.userData.points.material.uniforms.pixelsPerMetre.value = pixelsPerMetre;
     }
+    if (this.materials.space) this.materials.space.uniforms.pixelsPerMetre.value = pixelsPerMetre;
     this.materials.scan_nodes.uniforms.pixelsPerMetre.value = pixelsPerMetre;
     this.materials.odometry_nodes.uniforms.pixelsPerMetre.value = pixelsPerMetre;
     this.renderer.render(this.scene, this.camera);

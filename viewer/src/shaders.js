@@ -47,6 +47,29 @@ export const scanVertex = `
     gl_PointSize = 1.5;
   }`;
 
+// Points of space by their height above the floor: those outside a band are nowhere.
+export const spaceVertex = `
+  uniform float pixelsPerMetre;
+  uniform float diameter;
+  uniform vec2 band;              // m
+  uniform vec2 reach;             // m, of all
+  varying float share;
+  void main() {
+    share = clamp((position.z - reach.x) / max(reach.y - reach.x, 0.01), 0.0, 1.0);
+    vec4 in_eye = modelViewMatrix * vec4(position, 1.0);
+    bool is_shown = position.z >= band.x && position.z <= band.y;
+    gl_Position = is_shown ? projectionMatrix * in_eye : vec4(2.0, 2.0, 2.0, 1.0);
+    gl_PointSize = max(1.3, diameter * pixelsPerMetre / -in_eye.z);
+  }`;
+export const spaceFragment = `
+  uniform vec3 lowColour;
+  uniform vec3 highColour;
+  varying float share;
+  void main() {
+    gl_FragColor = vec4(mix(lowColour, highColour, share), 1.0);
+    #include <colorspace_fragment>
+  }`;
+
 export const flatFragment = `
   uniform vec3 colour;
   uniform float opacity;

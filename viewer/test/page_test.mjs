@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// node page_test.mjs CHROMIUM REPORT EDITS WAY: opens a report from disk and uses it as a person would,
-// then WAY, the same with a way through the building. The lines that it proposes for a validated closure
+// node page_test.mjs CHROMIUM REPORT EDITS WAY SPACE: opens a report from disk and uses it as a person would,
+// then WAY, the same with a way through the building, and SPACE, of a 3D lidar. The lines that it proposes for a validated closure
 // and for a match that was not validated go to EDITS.
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
 import {pathToFileURL} from 'node:url';
 import {chromium} from 'playwright-core';
 
-const [, , executablePath, report, edits, way] = process.argv;
+const [, , executablePath, report, edits, way, space] = process.argv;
 const kPatience = 120000;  // ms; everything is drawn by the processor
 
 const browser = await chromium.launch({
@@ -112,6 +112,7 @@ try {
   assert.match(await page.locator('#title').textContent(), /<script>alert\(1\)<!--/);
 
   assert.equal(await page.locator('#layer-route').count(), 0, 'a way where none was asked for');
+  assert.equal(await page.locator('#band-low').count(), 0, 'heights where no lidar saw any');
   await page.goto(pathToFileURL(way).href);
   await page.waitForSelector('html[data-ready=true]');
   const withWay = await picture();
@@ -119,8 +120,27 @@ try {
   assert.notEqual(await picture(), withWay, 'the way is not drawn');
   assert.match(await page.locator('label:has(#layer-route)').textContent(), /Way of [\d.]+.m/);
 
+  await page.goto(pathToFileURL(space).href);
+  await page.waitForSelector('html[data-ready=true]');
+  assert.match(await page.locator('label:has(#layer-space)').textContent(), /Points of the 3D lidar.*\d/);
+  const low = page.getByRole('slider', {name: 'From, above the floor'});
+  const high = page.getByRole('slider', {name: 'To, above the floor'});
+  assert.match(await low.getAttribute('aria-valuetext'), /^0\.20.m$/);
+  const usual = await picture();
+  await high.focus();
+  await page.keyboard.press('End');
+  const withCeiling = await picture();
+  assert.notEqual(withCeiling, usual, 'the ceiling does not come with the height of the band');
+  await page.keyboard.press('Home');
+  assert.equal(await low.inputValue(), await high.inputValue(), 'the ends of the band pass each other');
+  await page.keyboard.press('End');
+  const withFloor = await picture();
+  assert.notEqual(withFloor, withCeiling, 'the floor does not come with the depth of the band');
+  await page.locator('#layer-space').uncheck();
+  assert.notEqual(await picture(), withFloor, 'points that are not shown are drawn');
+
   assert.deepEqual(complaints, []);
-  assert.deepEqual(requests.filter((url) => url !== address && url !== pathToFileURL(way).href && !/^(data|blob):/.test(url)), []);
+  assert.deepEqual(requests.filter((url) => url !== address && ![way, space].some((file) => url === pathToFileURL(file).href) && !/^(data|blob):/.test(url)), []);
   console.log('the page is as it should be');
 } finally {
   await browser.close();
