@@ -41,7 +41,7 @@ void ReadClouds(const SavedMap& map, const SpaceRequest& request, const std::str
   if (request.logs.empty()) {
     std::size_t taken = 0;
     const std::size_t all = map.result.kept_clouds.size();
-    ForEachKeptCloud(map.result, [&](const LevelledCloud& cloud, std::size_t trajectory_index) {
+    ForEachKeptCloud(map.result, 1, [&](const LevelledCloud& cloud, std::size_t trajectory_index) {
       add(cloud, trajectory_index);
       progress.Progress(static_cast<double>(++taken) / static_cast<double>(all), 0);
     });

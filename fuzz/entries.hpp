@@ -14,6 +14,8 @@ void RosBag1(const std::uint8_t* data, std::size_t size);
 void RosBag2(const std::uint8_t* data, std::size_t size);
 void Mcap(const std::uint8_t* data, std::size_t size);
 void RosMessages(const std::uint8_t* data, std::size_t size);
+/// Of a saved map.
+void PackedCloud(const std::uint8_t* data, std::size_t size);
 void Configuration(const std::uint8_t* data, std::size_t size);
 /// Of the corpus' one map.
 void Edits(const std::uint8_t* data, std::size_t size);

@@ -4,6 +4,7 @@
 #include "log/ros_messages.hpp"
 #include "log/ros_point_cloud.hpp"
 #include "masked_mapper/log/log_reader.hpp"
+#include "masked_mapper/log/packed_cloud.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper::fuzz {
@@ -54,6 +55,14 @@ void RosMessages(const std::uint8_t* data, std::size_t size) {
     ParseTransforms(data, size, encoding);
     ParseImu(data, size, encoding);
     ParseFluidPressure(data, size, encoding);
+  }
+}
+
+void PackedCloud(const std::uint8_t* data, std::size_t size) {
+  const auto cloud = UnpackCloud({reinterpret_cast<const char*>(data), size});
+  if (!cloud) return;
+  for (const CloudPoint& point : cloud->points) {
+    if (!point.position.allFinite()) std::abort();
   }
 }
 

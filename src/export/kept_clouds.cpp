@@ -9,9 +9,9 @@
 
 namespace masked_mapper {
 
-void ForEachKeptCloud(const BuildingMap& map,
+void ForEachKeptCloud(const BuildingMap& map, std::size_t stride,
                       const std::function<void(const LevelledCloud&, std::size_t)>& take) {
-  for (std::size_t i = 0; i < map.kept_clouds.size(); ++i) {
+  for (std::size_t i = 0; i < map.kept_clouds.size(); i += stride) {
     const KeptCloud& kept = map.kept_clouds[i];
     std::optional<LevelledCloud> cloud = UnpackCloud(*kept.packed);
     if (!cloud) throw InputError("cloud " + std::to_string(i) + " of the map is damaged");

@@ -24,42 +24,54 @@ constexpr double kFarthest = 20.0;    // m; farther, a lidar's rings are metres 
 // Heights above the floor of what is a building's; the rest is seen through windows and shafts.
 constexpr double kLowest = -0.5;  // m
 constexpr double kHighest = 6.0;  // m
-// Of the points in all clouds: a building is seen a hundred times, and once is enough here.
-constexpr std::size_t kMostLookedAt = 10000000;
-constexpr double kFinestStep = 0.01;  // m, of coordinates in the page
+// Of the points in all clouds: a building is seen a hundred times, and a few times are enough here.
+constexpr std::size_t kMostLookedAt = 4000000;
+constexpr double kBytesPerPoint = 1.5;  // of packed clouds, about
+constexpr double kFinestStep = 0.01;    // m, of coordinates in the page
 constexpr std::uint32_t kLeastHits = 2;
 
-/// One of so many points is looked at.
-std::size_t StrideOf(const BuildingMap& map) {
-  // About three bytes make a point: what it is to the last is no matter.
+/// One of so many is looked at.
+struct Strides {
+  std::size_t clouds = 1;
+  std::size_t points = 1;  ///< of such a cloud
+};
+
+Strides StridesOf(const BuildingMap& map) {
   std::size_t bytes = 0;
   for (const KeptCloud& kept : map.kept_clouds) bytes += kept.packed->size();
-  return std::max<std::size_t>(1, bytes / 3 / kMostLookedAt);
+  const double too_many =
+      static_cast<double>(bytes) / kBytesPerPoint / static_cast<double>(kMostLookedAt);
+  if (too_many <= 1.0) return {};
+  // Most of the work is to unpack: rather few clouds than few points of each.
+  const double of_clouds = std::ceil(std::sqrt(2.0 * too_many));
+  return {static_cast<std::size_t>(of_clouds),
+          static_cast<std::size_t>(std::ceil(too_many / of_clouds))};
 }
 
 /// z above the point's floor.
 VoxelCloud PointsOf(const BuildingMap& map) {
   VoxelCloud voxels(kFinestVoxel);
   CloudPoses poses(map, kSpacingOfKept, {});
-  const std::size_t stride = StrideOf(map);
-  std::size_t next = 0;  // which of the stride, so that it is not the lowest of each cloud
-  ForEachKeptCloud(map, [&](const LevelledCloud& cloud, std::size_t trajectory_index) {
-    const TrajectoryPose* const pose = poses.TakeAt(trajectory_index);
-    if (pose == nullptr) return;
-    Eigen::Isometry3d T_floor_level = poses.T_world_level(*pose);
-    T_floor_level.translation().z() = 0.0;
-    SpacePoint point;
-    point.label = static_cast<std::uint32_t>(pose->floor);
-    const Eigen::Vector3f lidar = cloud.lidar.cast<float>();
-    for (; next < cloud.points.size(); next += stride) {
-      const Eigen::Vector3f& seen = cloud.points[next].position;
-      if ((seen - lidar).norm() > static_cast<float>(kFarthest)) continue;
-      point.position = T_floor_level * seen.cast<double>();
-      if (point.position.z() < kLowest || point.position.z() > kHighest) continue;
-      voxels.Add(point);
-    }
-    next -= cloud.points.size();
-  });
+  const Strides strides = StridesOf(map);
+  std::size_t next = 0;  // of the points, on from cloud to cloud
+  ForEachKeptCloud(map, strides.clouds,
+                   [&](const LevelledCloud& cloud, std::size_t trajectory_index) {
+                     const TrajectoryPose* const pose = poses.TakeAt(trajectory_index);
+                     if (pose == nullptr) return;
+                     Eigen::Isometry3d T_floor_level = poses.T_world_level(*pose);
+                     T_floor_level.translation().z() = 0.0;
+                     SpacePoint point;
+                     point.label = static_cast<std::uint32_t>(pose->floor);
+                     const Eigen::Vector3f lidar = cloud.lidar.cast<float>();
+                     for (; next < cloud.points.size(); next += strides.points) {
+                       const Eigen::Vector3f& seen = cloud.points[next].position;
+                       if ((seen - lidar).norm() > static_cast<float>(kFarthest)) continue;
+                       point.position = T_floor_level * seen.cast<double>();
+                       if (point.position.z() < kLowest || point.position.z() > kHighest) continue;
+                       voxels.Add(point);
+                     }
+                     next -= cloud.points.size();
+                   });
   return voxels;
 }
 

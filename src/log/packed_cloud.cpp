@@ -52,8 +52,11 @@ std::int64_t IndexOf(float in_voxels) {
   return whole - (static_cast<float>(whole) > in_voxels ? 1 : 0) + kMiddle;
 }
 
-/// Key and place in the cloud of every point, in order of both.
+/// Key and place in the cloud of every point, in order of both: by one axis after the other, each
+/// time without changing the order of what is alike.
 std::vector<std::uint64_t> SortedKeys(const CloudPoints& points) {
+  std::array<std::vector<std::uint32_t>, 3> begins;  // by index along each axis
+  for (std::vector<std::uint32_t>& axis : begins) axis.resize(kAxisMask + 2, 0);
   std::vector<std::uint64_t> keys;
   keys.reserve(points.size());
   const std::size_t most = std::min(points.size(), std::size_t{1} << kPlaceBits);
@@ -62,18 +65,19 @@ std::vector<std::uint64_t> SortedKeys(const CloudPoints& points) {
     if (!(in_voxels.cwiseAbs().maxCoeff() < static_cast<float>(kMiddle - 1))) continue;
     std::uint64_t key = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      key = key << kAxisBits | static_cast<std::uint64_t>(IndexOf(in_voxels(axis)));
+      const auto index = static_cast<std::uint64_t>(IndexOf(in_voxels(axis)));
+      ++begins[static_cast<std::size_t>(axis)][index + 1];
+      key = key << kAxisBits | index;
     }
     keys.push_back(key << kPlaceBits | i);
   }
-  // By one axis after the other, each time without changing the order of what is alike.
   std::vector<std::uint64_t> sorted(keys.size());
-  for (unsigned shift = kPlaceBits; shift < 64; shift += kAxisBits) {
-    std::vector<std::uint32_t> begins(kAxisMask + 2, 0);
-    for (const std::uint64_t key : keys) ++begins[(key >> shift & kAxisMask) + 1];
-    for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
-    for (const std::uint64_t key : keys) sorted[begins[key >> shift & kAxisMask]++] = key;
+  unsigned shift = kPlaceBits;
+  for (std::vector<std::uint32_t>& axis : begins) {
+    for (std::size_t i = 1; i < axis.size(); ++i) axis[i] += axis[i - 1];
+    for (const std::uint64_t key : keys) sorted[axis[key >> shift & kAxisMask]++] = key;
     keys.swap(sorted);
+    shift += kAxisBits;
   }
   return keys;
 }
@@ -95,7 +99,8 @@ struct Sum {
 
   void Add(const CloudPoint& point, const Eigen::Vector3f& corner) {
     offset += point.position * kVoxelsPerMetre - corner;
-    intensity += std::isfinite(point.intensity) ? std::max(0.0F, point.intensity) : 0.0F;
+    const bool counts = point.intensity > 0.0F && std::isfinite(point.intensity);
+    intensity += counts ? point.intensity : 0.0F;
     count += 1.0F;
   }
   unsigned char Part() const {
@@ -153,7 +158,10 @@ Columns ColumnsOf(const CloudPoints& points, float greatest) {
 float GreatestIntensity(const CloudPoints& points) {
   float greatest = 0.0F;
   for (const CloudPoint& point : points) {
-    if (std::isfinite(point.intensity)) greatest = std::max(greatest, point.intensity);
+    const float intensity = point.intensity;
+    if (intensity > greatest && intensity < std::numeric_limits<float>::infinity()) {
+      greatest = intensity;
+    }
   }
   return greatest;
 }

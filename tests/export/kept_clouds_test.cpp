@@ -27,14 +27,17 @@ TEST(KeptCloudsTest, ComeInOrderWithTheStampsOfTheirPoses) {
     map.kept_clouds.push_back({index, std::make_shared<const std::string>(PackCloud(Room()))});
   }
   std::vector<std::size_t> seen;
-  ForEachKeptCloud(map, [&](const LevelledCloud& cloud, std::size_t index) {
+  ForEachKeptCloud(map, 1, [&](const LevelledCloud& cloud, std::size_t index) {
     seen.push_back(index);
     EXPECT_EQ(cloud.log_stamp, map.trajectory[index].log_stamp);
     EXPECT_GT(cloud.points.size(), 1000U);
   });
   EXPECT_EQ(seen, (std::vector<std::size_t>{0, 2, 7}));
+  std::size_t taken = 0;
+  ForEachKeptCloud(map, 2, [&](const LevelledCloud&, std::size_t) { ++taken; });
+  EXPECT_EQ(taken, 2U);
   map.kept_clouds.push_back({7, std::make_shared<const std::string>("no cloud")});
-  EXPECT_THROW(ForEachKeptCloud(map, [](const LevelledCloud&, std::size_t) {}), InputError);
+  EXPECT_THROW(ForEachKeptCloud(map, 1, [](const LevelledCloud&, std::size_t) {}), InputError);
 }
 
 TEST(KeptCloudsTest, TellTheSameOfSpaceAsTheCloudsOfTheLog) {
@@ -58,7 +61,8 @@ TEST(KeptCloudsTest, TellTheSameOfSpaceAsTheCloudsOfTheLog) {
   }
   of_log.Finish();
   SpaceOccupancy of_map(map, options);
-  ForEachKeptCloud(map, [&](const LevelledCloud& cloud, std::size_t i) { of_map.Add(cloud, i); });
+  ForEachKeptCloud(map, 1,
+                   [&](const LevelledCloud& cloud, std::size_t i) { of_map.Add(cloud, i); });
   of_map.Finish();
   int same = 0;
   int all = 0;

@@ -92,6 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Entry{"carmen", &CarmenLog, 100}, Entry{"rosbag1", &RosBag1, 100},
                       Entry{"rosbag2", &RosBag2, 100}, Entry{"mcap", &Mcap, 200},
                       Entry{"messages", &RosMessages, 500},
+                      Entry{"packed_cloud", &PackedCloud, 500},
                       Entry{"configuration", &Configuration, 200}, Entry{"edits", &Edits, 100},
                       Entry{"map_file", &MapFile, 50}),
     [](const auto& info) { return std::string(info.param.name); });

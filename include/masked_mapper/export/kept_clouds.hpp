@@ -14,8 +14,9 @@ namespace masked_mapper {
 /// They were chosen by the way between them already, as the wheels told it: none is too near.
 constexpr CloudSpacing kSpacingOfKept{0.15, 10.0};
 
-/// `take(cloud, trajectory_index)` of each, in order. Throws InputError at one that is damaged.
-void ForEachKeptCloud(const BuildingMap& map,
+/// `take(cloud, trajectory_index)` of one of `stride`, in order. Throws InputError at one that is
+/// damaged.
+void ForEachKeptCloud(const BuildingMap& map, std::size_t stride,
                       const std::function<void(const LevelledCloud&, std::size_t)>& take);
 
 }  // namespace masked_mapper
