@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -37,11 +38,18 @@ struct Rays {
 
   Rays(const CloudPoints& points, const Eigen::Vector3f& lidar)
       : turns(points.size()), ranges(points.size()) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const float x = points[i].position.x() - lidar.x();
-      const float y = points[i].position.y() - lidar.y();
-      turns[i] = TurnOf(y, x);
-      ranges[i] = std::sqrt(x * x + y * y);
+    for (std::size_t first = 0; first < points.size(); first += kTurnsAtOnce) {
+      const std::size_t count = std::min(kTurnsAtOnce, points.size() - first);
+      Floats x{};
+      Floats y{};
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f& position = points[first + i].position;
+        x[i] = position.x() - lidar.x();
+        y[i] = position.y() - lidar.y();
+        ranges[first + i] = std::sqrt(x[i] * x[i] + y[i] * y[i]);
+      }
+      const Floats all = TurnsOf(y, x);
+      std::memcpy(&turns[first], &all, count * sizeof(float));
     }
   }
 };

@@ -10,6 +10,12 @@
 namespace masked_mapper {
 namespace {
 
+/// Of one, beside others of which it must know nothing.
+float TurnOf(float y, float x) {
+  const Floats turns = TurnsOf(Floats{1.0F, y, 0.0F, -3.0F}, Floats{2.0F, x, 0.0F, 0.5F});
+  return turns[1];
+}
+
 TEST(TurnOfTest, IsTheArcTangentInTurns) {
   double worst = 0.0;
   for (const double range : {1e-3, 1.0, 7.5, 9e3}) {
