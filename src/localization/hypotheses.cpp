@@ -80,11 +80,9 @@ void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t
     climbed_ = Climb{*climb_m, sigma_m};
     return;
   }
-  // Floors may look alike, rides do not: what is found from here on, and was not come to by the
-  // ride, must have been elsewhere before, against which all speaks that was seen there.
-  if (climb_m && !after.empty() && search_was_complete_) {
-    const double known = std::clamp(Nats(hypotheses_.front()), 0.0, options_.believed_nats);
-    elsewhere_nats_ = std::max(elsewhere_nats_, known);
+  // Floors may look alike, rides do not: so it is with what the ride does not come to.
+  if (climb_m && !after.empty()) {
+    elsewhere_nats_ = std::max(elsewhere_nats_, NatsAgainstElsewhere());
   }
   hypotheses_ = std::move(after);
   Whereabouts about;
@@ -100,6 +98,13 @@ void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t
     }
   }
   whereabouts_ = std::move(about);
+}
+
+// What an earlier search, which was complete, did not come upon, and fits later, must have been
+// elsewhere before, against which all speaks that was seen there.
+double Hypotheses::NatsAgainstElsewhere() const {
+  if (!search_was_complete_ || hypotheses_.empty()) return 0.0;
+  return std::clamp(Nats(hypotheses_.front()), 0.0, options_.believed_nats);
 }
 
 void Hypotheses::Judge(Hypothesis& hypothesis, std::size_t first_patch) const {
@@ -210,11 +215,7 @@ void Hypotheses::SearchAround(const Stretch& stretch, const UncertainPose2& T_wo
 void Hypotheses::Search(const Stretch& stretch) {
   const ScanPoints::Ptr points = stretch.Points(kSearched);
   ++searches_;
-  // What an earlier search, which was complete, did not come upon, and fits now, must have been
-  // elsewhere before, against which all speaks that was seen there.
-  const bool was_complete = search_was_complete_ && !hypotheses_.empty();
-  const double known =
-      was_complete ? std::clamp(Nats(hypotheses_.front()), 0.0, options_.believed_nats) : 0.0;
+  const double elsewhere_nats = std::max(elsewhere_nats_, NatsAgainstElsewhere());
   search_was_complete_ = true;
   double best = 0.0;
   std::vector<std::pair<FloorId, std::vector<Eigen::Vector2d>>> searched;
@@ -237,7 +238,7 @@ void Hypotheses::Search(const Stretch& stretch) {
              thinned, std::max(kLeastScore, best - kAlike), kPlaceM, kPlaceDeg)) {
       Hypothesis hypothesis;
       hypothesis.floor = id;
-      hypothesis.prior_nats = -map_.LogPlaces() - std::max(elsewhere_nats_, known);
+      hypothesis.prior_nats = -map_.LogPlaces() - elsewhere_nats;
       hypothesis.found_m = stretch.length_m();
       const double within_m = 0.5;
       const PlaceFit fine = floor.fine().FindNear(fine_points, coarse.T_world_place, within_m, 2.0);

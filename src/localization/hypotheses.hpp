@@ -84,6 +84,7 @@ class Hypotheses {
     return hypothesis.prior_nats + hypothesis.off_the_map.nats() + hypothesis.slip_nats +
            NatsOf(hypothesis.tally, options_.agrees_elsewhere, options_);
   }
+  double NatsAgainstElsewhere() const;
   void Judge(Hypothesis& hypothesis, std::size_t first_patch) const;
   void NoteSlip(Hypothesis& hypothesis, const Stretch& stretch) const;
   void Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const;

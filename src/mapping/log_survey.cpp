@@ -103,13 +103,11 @@ class Surveyor {
         sweep_(options.motion),
         unbroken_(options.motion, !mending.left_out.empty()),
         turns_left_out_(mending.turns_left_out),
-        asks_wheels_(options.motion.source == MotionSource::kAuto ||
-                     options.motion.source == MotionSource::kFused),
-        believes_wheels_(options.motion.source == MotionSource::kOdometry),
+        motion_source_(options.motion.source),
         threads_(options.threads),
         listeners_(options.threads > 1) {
     if (!options.floors.file.empty()) floors_.UseLabels(labels);
-    if (asks_wheels_ || believes_wheels_) listeners_.Add(&standstill_);
+    if (motion_source_ != MotionSource::kScans) listeners_.Add(&standstill_);
     listeners_.Add(&wheels_);
   }
 
@@ -132,7 +130,7 @@ class Surveyor {
 
   /// What is to be mended of the wheels, each with its finding.
   WheelMending Wheels() {
-    if (!asks_wheels_ || !survey_.odometry_moves) return {};
+    if (!AsksWheels() || !survey_.odometry_moves) return {};
     if (turns_left_out_) {
       // Of the turns no more is to be asked: where the robot turns on its place, such wheels rest.
       WheelReport report = wheels_.Find({});
@@ -165,7 +163,7 @@ class Surveyor {
     } else if (survey_.has_odometry && !survey_.odometry_moves) {
       survey_.warnings.emplace_back("the odometry never moves: scans alone tell the motion");
     }
-    if (believes_wheels_ && survey_.odometry_moves) {
+    if (motion_source_ == MotionSource::kOdometry && survey_.odometry_moves) {
       for (const FalseRest& rest : standstill_.Find()) {
         survey_.warnings.push_back(InWords(rest) +
                                    "; the map has only the way by odometry, as motion.source says");
@@ -179,6 +177,11 @@ class Surveyor {
   }
 
  private:
+  /// Not where the user settled whom to believe.
+  bool AsksWheels() const {
+    return motion_source_ == MotionSource::kAuto || motion_source_ == MotionSource::kFused;
+  }
+
   /// Of the wheels without the rests that are none; behind the last observation.
   const WheelReport& WhereWheelsTurn() {
     if (!report_) report_ = wheels_.Find(SpansOf(standstill_.Find()));
@@ -236,8 +239,7 @@ class Surveyor {
   SweepCheck sweep_;
   UnbrokenWay unbroken_;
   bool turns_left_out_;
-  bool asks_wheels_;      ///< not where the user settled whom to believe
-  bool believes_wheels_;  ///< as the user wants it, whatever scans say
+  MotionSource motion_source_;  ///< as the user wants it
   Pose2 T_robot_laser_;
   TimeSpan log_;                        ///< from the first scan to the last
   std::optional<double> stamp_before_;  ///< of the scan before, as all below

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "localization/room_drive.hpp"
-#include "mapping/masked_mapper.hpp"
-#include "masked_mapper/motion/floor_timeline.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -38,20 +36,7 @@ BuildingMap MapOfTower(const Walls& room, std::size_t storeys) {
     interval.level = level;
     floors.intervals.push_back(interval);
   }
-  MappingOptions options;
-  options.motion.source = MotionSource::kFused;
-  MaskedMapper mapper("always", options, floors);
-  for (const LaserScan& scan : Drive(room, 0, static_cast<int>(storeys) * kScans, 0.0))
-    mapper.Observe(scan);
-  return mapper.Finish();
-}
-
-SearchableFloorOptions Usual() {
-  SearchableFloorOptions options;
-  options.fine = FineSearchOptions();
-  options.seen.resolution_m = 0.2;
-  options.seen.min_hits = 1;
-  return options;
+  return MapOf(Drive(room, 0, static_cast<int>(storeys) * kScans, 0.0), floors);
 }
 
 class HypothesesTest : public testing::Test {
@@ -73,7 +58,7 @@ class HypothesesTest : public testing::Test {
 
   Walls room_ = OneSidedRoom();
   BuildingMap map_;
-  KnownMap known_{map_, Usual()};
+  KnownMap known_{map_, UsualFloorSearch()};
   Hypotheses hypotheses_{known_, EvidenceOptions()};
   Stretch stretch_;
   int driven_ = 0;

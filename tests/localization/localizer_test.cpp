@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "localization/room_drive.hpp"
-#include "mapping/masked_mapper.hpp"
-#include "masked_mapper/motion/floor_timeline.hpp"
 #include "masked_mapper/text/input_error.hpp"
 
 namespace masked_mapper {
@@ -15,19 +13,9 @@ namespace {
 
 class LocalizerTest : public testing::Test {
  protected:
-  static BuildingMap MapOf(const std::vector<LaserScan>& log) {
-    static const FloorTimeline kOneFloor;
-    MappingOptions options;
-    options.motion.source = MotionSource::kFused;
-    MaskedMapper mapper("always", options, kOneFloor);
-    for (const LaserScan& scan : log) mapper.Observe(scan);
-    return mapper.Finish();
-  }
   static LocalizerOptions Usual() {
     LocalizerOptions options;
-    options.floor_search.fine = FineSearchOptions();
-    options.floor_search.seen.resolution_m = 0.2;
-    options.floor_search.seen.min_hits = 1;
+    options.floor_search = UsualFloorSearch();
     return options;
   }
 };

@@ -7,20 +7,9 @@
 
 #include "localization/evidence.hpp"
 #include "localization/room_drive.hpp"
-#include "mapping/masked_mapper.hpp"
-#include "masked_mapper/motion/floor_timeline.hpp"
 
 namespace masked_mapper {
 namespace {
-
-BuildingMap MapOf(const std::vector<LaserScan>& log) {
-  static const FloorTimeline kOneFloor;
-  MappingOptions options;
-  options.motion.source = MotionSource::kFused;
-  MaskedMapper mapper("always", options, kOneFloor);
-  for (const LaserScan& scan : log) mapper.Observe(scan);
-  return mapper.Finish();
-}
 
 constexpr double kFirstHeading = 0.5 * M_PI;  // rad, of Drive() in its room
 
@@ -36,21 +25,14 @@ class PoseTrackerTest : public testing::Test {
     for (double x = -2.0; x < 17.0; x += 2.0) walls.push_back({{x, 0.0}, {x, 0.8}});
     return walls;
   }
-  static SearchableFloorOptions Usual() {
-    SearchableFloorOptions options;
-    options.fine = FineSearchOptions();
-    options.seen.resolution_m = 0.2;
-    options.seen.min_hits = 1;
-    return options;
-  }
 };
 
-// Surer than it should have been, and a metre off: what the map shows puts it right.
+// Surer than it should have been, and 0.7 m off: what the map shows puts it right.
 TEST_F(PoseTrackerTest, AMatchThatFitsBetterOverrulesTheMotion) {
   const Walls room = Room(14.0, 9.0);
   const std::vector<LaserScan> log = Drive(room, 0, 320, 0.0);
   const BuildingMap map = MapOf(log);
-  const KnownMap known(map, Usual());
+  const KnownMap known(map, UsualFloorSearch());
   PoseTracker tracker(known, LoopClosureOptions());
   const Pose2 truth = *log[100].T_odom_robot;
   const UncertainPose2 guess = Guess({truth.x + 0.7, truth.y, truth.theta}, 0.25, 2.0);
@@ -63,7 +45,7 @@ TEST_F(PoseTrackerTest, AMatchThatFitsBetterOverrulesTheMotion) {
 TEST_F(PoseTrackerTest, AScanFitsBestFromWhereItWasTaken) {
   const std::vector<LaserScan> log = Drive(Hall(), 0, 320, 0.0);
   const BuildingMap map = MapOf(log);
-  const KnownMap known(map, Usual());
+  const KnownMap known(map, UsualFloorSearch());
   int right = 0;
   int tried = 0;
   for (std::size_t i = 20; i < log.size(); i += 20) {
@@ -85,7 +67,7 @@ TEST_F(PoseTrackerTest, AScanFitsBestFromWhereItWasTaken) {
 TEST_F(PoseTrackerTest, WhereTheMapHasNoNodeNothingIsMatched) {
   const std::vector<LaserScan> log = Drive(Room(14.0, 9.0), 0, 60, 0.0);
   const BuildingMap map = MapOf(log);
-  const KnownMap known(map, Usual());
+  const KnownMap known(map, UsualFloorSearch());
   PoseTracker tracker(known, LoopClosureOptions());
   EXPECT_FALSE(tracker.Match(log[10], 0, Guess({200.0, 0.0, 0.0}, 0.5, 2.0)).has_value());
   EXPECT_EQ(tracker.matches(), 0);

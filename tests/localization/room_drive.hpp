@@ -8,7 +8,10 @@
 #include <tuple>
 #include <vector>
 
+#include "mapping/masked_mapper.hpp"
 #include "masked_mapper/geometry/pose2.hpp"
+#include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/rendering/searchable_floor.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 
 namespace masked_mapper {
@@ -79,6 +82,24 @@ inline std::vector<LaserScan> Drive(const Walls& walls, int first, int scans, do
     log.push_back(std::move(scan));
   }
   return log;
+}
+
+/// Of the drive, on the floors that are given.
+inline BuildingMap MapOf(const std::vector<LaserScan>& log, const FloorTimeline& floors = {}) {
+  MappingOptions options;
+  options.motion.source = MotionSource::kFused;
+  MaskedMapper mapper("always", options, floors);
+  for (const LaserScan& scan : log) mapper.Observe(scan);
+  return mapper.Finish();
+}
+
+/// Floors made ready for a search as the program does it.
+inline SearchableFloorOptions UsualFloorSearch() {
+  SearchableFloorOptions options;
+  options.fine = FineSearchOptions();
+  options.seen.resolution_m = 0.2;
+  options.seen.min_hits = 1;
+  return options;
 }
 
 }  // namespace masked_mapper

@@ -12,12 +12,26 @@
 namespace masked_mapper {
 namespace {
 
-/// Message i holds i bytes of i; the bag is damaged behind the tenth, and may throw at its end.
-class CountingBag final : public RosBag {
+/// Of one connection.
+class FakeBag : public RosBag {
  public:
-  explicit CountingBag(int messages, bool throws = false) : messages_(messages), throws_(throws) {
-    connections_[3].topic = "/count";
+  FakeBag(std::uint32_t connection, const std::string& topic) {
+    connections_[connection].topic = topic;
   }
+  const std::map<std::uint32_t, BagConnection>& Connections() const override {
+    return connections_;
+  }
+  bool IsIndexed() const override { return true; }
+
+ private:
+  std::map<std::uint32_t, BagConnection> connections_;
+};
+
+/// Message i holds i bytes of i; the bag is damaged behind the tenth, and may throw at its end.
+class CountingBag final : public FakeBag {
+ public:
+  explicit CountingBag(int messages, bool throws = false)
+      : FakeBag(3, "/count"), messages_(messages), throws_(throws) {}
   std::optional<BagMessage> Next() override {
     if (next_ == messages_ && throws_) throw std::runtime_error("the disk is gone");
     if (next_ == messages_) return std::nullopt;
@@ -30,10 +44,6 @@ class CountingBag final : public RosBag {
     return message;
   }
   void Rewind() override { next_ = 0; }
-  const std::map<std::uint32_t, BagConnection>& Connections() const override {
-    return connections_;
-  }
-  bool IsIndexed() const override { return true; }
   bool Truncated() const override { return next_ == messages_; }
   std::uint64_t Damaged() const override { return next_ > 10 ? 1 : 0; }
   std::string FirstDamage() const override { return "the eleventh"; }
@@ -44,7 +54,6 @@ class CountingBag final : public RosBag {
   bool throws_;
   int next_ = 0;
   std::vector<unsigned char> bytes_;
-  std::map<std::uint32_t, BagConnection> connections_;
 };
 
 int CountAll(BagAhead* ahead) {
@@ -78,11 +87,9 @@ TEST(BagAheadTest, GivesTheMessagesOfTheBagAndItsState) {
 }
 
 /// A cloud of one point more in each message, but one of them is cut off.
-class CloudBag final : public RosBag {
+class CloudBag final : public FakeBag {
  public:
-  explicit CloudBag(std::size_t messages) : messages_(messages) {
-    connections_[5].topic = "/points";
-  }
+  explicit CloudBag(std::size_t messages) : FakeBag(5, "/points"), messages_(messages) {}
   std::optional<BagMessage> Next() override {
     if (next_ == messages_) return std::nullopt;
     bytes_ = CloudOf({{"x", 0}, {"y", 4}, {"z", 8}}, 12,
@@ -96,10 +103,6 @@ class CloudBag final : public RosBag {
     return message;
   }
   void Rewind() override { next_ = 0; }
-  const std::map<std::uint32_t, BagConnection>& Connections() const override {
-    return connections_;
-  }
-  bool IsIndexed() const override { return true; }
   bool Truncated() const override { return false; }
   std::uint64_t Damaged() const override { return 0; }
   double Progress() const override { return 0.0; }
@@ -110,7 +113,6 @@ class CloudBag final : public RosBag {
   std::size_t messages_;
   std::size_t next_ = 0;
   std::string bytes_;
-  std::map<std::uint32_t, BagConnection> connections_;
 };
 
 TEST(BagAheadTest, ParsesCloudsAndLeavesTheBytesOfThoseThatAreNone) {
