@@ -9,7 +9,6 @@
 
 #include "aside_folder.hpp"
 #include "interrupt.hpp"
-#include "masked_mapper/export/kept_clouds.hpp"
 #include "masked_mapper/export/space_export.hpp"
 #include "masked_mapper/log/cloud_source.hpp"
 #include "masked_mapper/text/input_error.hpp"

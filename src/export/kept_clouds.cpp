@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/kept_clouds.hpp"
+#include "masked_mapper/export/space_export.hpp"
 
 #include <optional>
 #include <string>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cloud_poses.hpp"
-#include "masked_mapper/export/kept_clouds.hpp"
+#include "masked_mapper/export/space_export.hpp"
 #include "report_columns.hpp"
 #include "voxel_cloud.hpp"
 

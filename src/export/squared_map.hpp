@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/export/single_export.hpp"
+#include "masked_mapper/export/map_export.hpp"
 #include "masked_mapper/rendering/wall_lines.hpp"
 #include "masked_mapper/routing/lanes.hpp"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "floor_pressure.hpp"
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "wheel_track.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "wheel_track.hpp"
 

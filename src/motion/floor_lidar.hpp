@@ -13,8 +13,8 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/sensor/laser_scan.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 #include "wheel_track.hpp"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "pressure_heights.hpp"
 #include "wheel_track.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/motion/floor_options.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Against the rules of those who open the folders: map_server, the route server's loader, and the
 // loader of rmf_traffic_editor.
-#include "masked_mapper/export/single_export.hpp"
+#include "masked_mapper/export/map_export.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

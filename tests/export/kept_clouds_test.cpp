@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/kept_clouds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/export/single_export.hpp"
+#include "masked_mapper/export/map_export.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -16,6 +17,7 @@
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/octree.hpp"
 #include "masked_mapper/rendering/space_votes.hpp"
+#include "masked_mapper/sensor/lidar_cloud.hpp"
 
 namespace masked_mapper {
 
@@ -24,6 +26,15 @@ struct CloudSpacing {
   double distance_m = 0.15;  ///< travel from one cloud that is taken to the next
   double angle_deg = 10.0;   ///< or turn, whichever comes first
 };
+
+/// Those that a map keeps were chosen by the way between them already, as the wheels told it: none
+/// is too near.
+constexpr CloudSpacing kSpacingOfKept{0.15, 10.0};
+
+/// The clouds that a map keeps: `take(cloud, trajectory_index)` of one of `stride`, in order.
+/// Throws InputError at one that is damaged.
+void ForEachKeptCloud(const BuildingMap& map, std::size_t stride,
+                      const std::function<void(const LevelledCloud&, std::size_t)>& take);
 
 /// Of the clouds of a log.
 struct CloudCounts {

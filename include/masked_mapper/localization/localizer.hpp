@@ -17,7 +17,6 @@
 #include "masked_mapper/loop_closure/loop_closure_options.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/masks/mask_options.hpp"
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/rendering/searchable_floor.hpp"
 #include "masked_mapper/sensor/observation.hpp"

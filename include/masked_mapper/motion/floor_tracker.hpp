@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "masked_mapper/motion/floor_options.hpp"
 #include "masked_mapper/motion/floor_timeline.hpp"
+#include "masked_mapper/motion/motion_options.hpp"
 #include "masked_mapper/sensor/observation.hpp"
 
 namespace masked_mapper {
