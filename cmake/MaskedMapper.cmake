@@ -44,6 +44,17 @@ function(masked_mapper_precompile)
     <pcl/point_types.h> <regex> <sstream> <string> <vector>)
 endfunction()
 
+# Everything compiled goes through ccache, where it is installed. What is compiled once for all targets
+# (above) can be kept only so.
+macro(masked_mapper_use_ccache)
+  find_program(MASKED_MAPPER_CCACHE_PROGRAM ccache)
+  mark_as_advanced(MASKED_MAPPER_CCACHE_PROGRAM)
+  if(MASKED_MAPPER_CCACHE_PROGRAM)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros ${MASKED_MAPPER_CCACHE_PROGRAM})
+  endif()
+endmacro()
+
 # masked_mapper_room(name PUBLIC lib... PRIVATE lib...): the library of the sources in src/<name>/.
 # Its link list is the list of permitted arrows.
 function(masked_mapper_room name)
