@@ -57,6 +57,11 @@ ScanPoints::ConstPtr ClosureMatcher::PointsAround(NodeId node) const {
   return submaps_->PointsAround(node);
 }
 
+void ClosureMatcher::Forget() {
+  matcher_.Forget();
+  submaps_->Forget();
+}
+
 void ClosureMatcher::RefineAndBelieve(const ScanPoints& points_in_newer, Closure& closure) {
   closure.state = ClosureState::kHypothesis;
   // 3. Refine.

@@ -118,6 +118,7 @@ void LoopCloser::Impl::Solve() {
 void LoopCloser::Impl::CloseLate() {
   const StageTimer timer(map_.seconds.matching);
   CloseOpenVotes();
+  matcher_.Forget();  // nothing is matched against single scans any more
   NodePairs tried;
   CloseOpenRevisits(tried);
 }
@@ -302,8 +303,10 @@ void LoopCloser::Impl::Finish() {
     CloseLate();
     Solve();
   } else {
+    matcher_.Forget();
     CloseLateByWheels();
   }
+  late_matcher_.Forget();  // this may live as long as what is made of the map
   Audit();
 }
 

@@ -60,6 +60,11 @@ ScanPoints::ConstPtr Submaps::PointsAt(NodeId node) const {
   return masked_mapper::PointsAt(building_, node, options_.half_length_m);
 }
 
+void Submaps::Forget() {
+  submaps_.clear();
+  recently_used_.clear();
+}
+
 std::optional<SubmapMatch> Submaps::Refine(NodeId node, const ScanPoints& points_in_robot,
                                            const UncertainPose2& T_node_robot) {
   Eigen::Matrix3d prior_covariance = T_node_robot.covariance;

@@ -35,6 +35,9 @@ class Submaps {
   std::optional<SubmapMatch> Refine(NodeId node, const ScanPoints& points_in_robot,
                                     const UncertainPose2& T_node_robot);
 
+  /// Gives back the memory of submaps; they are built again where they are asked for.
+  void Forget();
+
   /// What was seen at `node`, in its frame: its own scan, or, of an odometry-only node, the scan
   /// kept nearest to it. Null when none was kept there.
   ScanPoints::ConstPtr PointsAt(NodeId node) const;

@@ -40,6 +40,12 @@ class TableCache {
     return found->second.table;
   }
 
+  void Clear() {
+    entries_.clear();
+    order_.clear();
+    bytes_ = 0;
+  }
+
   void Insert(std::int64_t key, TablePtr table) {
     bytes_ += table->MemoryBytes();
     order_.push_front(key);
@@ -111,6 +117,8 @@ class JointMatcher::Impl {
     }
     return Solve(pairs, problems);
   }
+
+  void Forget() { tables_.Clear(); }
 
  private:
   std::vector<TablePtr> TablesOf(const std::vector<MatchPair>& pairs) {
@@ -208,5 +216,7 @@ JointMatcher::~JointMatcher() = default;
 std::vector<MatchResult> JointMatcher::Match(const std::vector<MatchPair>& pairs) {
   return impl_->Match(pairs);
 }
+
+void JointMatcher::Forget() { impl_->Forget(); }
 
 }  // namespace masked_mapper

@@ -95,6 +95,8 @@ TEST(JointMatcher, SameResultsAtAnyNumberOfThreadsAndAnyCacheSize) {
   JointMatcher one(options);
   const std::vector<MatchResult> expected = one.Match(pairs);
   ExpectSameResults(one.Match(pairs), expected);  // from cached tables
+  one.Forget();
+  ExpectSameResults(one.Match(pairs), expected);
   options.threads = 2;
   ExpectSameResults(JointMatcher(options).Match(pairs), expected);
   options.threads = 16;

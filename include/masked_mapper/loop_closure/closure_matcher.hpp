@@ -53,6 +53,9 @@ class ClosureMatcher {
   /// What was seen around a node, in its frame.
   ScanPoints::ConstPtr PointsAround(NodeId node) const;
 
+  /// Gives back the memory of tables and submaps; they are made again where they are asked for.
+  void Forget();
+
   const Submaps& submaps() const { return *submaps_; }
 
  private:

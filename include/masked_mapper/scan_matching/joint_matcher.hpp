@@ -52,6 +52,9 @@ class JointMatcher {
   /// Matches all pairs; results in the order of the pairs, the same at any number of threads.
   std::vector<MatchResult> Match(const std::vector<MatchPair>& pairs);
 
+  /// Gives back the memory of tables, which are made again where they are asked for.
+  void Forget();
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
