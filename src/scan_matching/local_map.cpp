@@ -35,18 +35,31 @@ class LocalMap::Impl {
   template <class Archive>
   void Serialize(Archive& archive) {
     std::vector<std::int32_t> cells = slots_.cells();
-    archive(corner_, cells, moments_, scans_, front_rad_);
+    std::vector<std::int32_t> moments_at;
+    for (const Slot& slot : in_use_) {
+      moments_at.insert(moments_at.end(), slot.moments.begin(), slot.moments.end());
+    }
+    archive(corner_, cells, moments_at, moments_, scans_, front_rad_);
     if constexpr (Archive::kReads) {
-      if (moments_.size() != kSides * cells.size()) {
+      const auto is_one = [&](std::int32_t at) {
+        return at >= kNone && at < static_cast<std::int32_t>(moments_.size());
+      };
+      if (moments_at.size() != kSides * cells.size() ||
+          !std::all_of(moments_at.begin(), moments_at.end(), is_one)) {
         archive.Refuse("a local map that does not hold together");
       }
       if (!slots_.Take(cells)) archive.Refuse("a local map with a cell outside, or one twice");
-      known_.assign(cells.size(), {});
+      in_use_.assign(cells.size(), {});
+      for (std::size_t i = 0; i < moments_at.size(); ++i) {
+        in_use_[i / kSides].moments[i % kSides] = moments_at[i];
+      }
+      known_.clear();
     }
   }
 
  private:
   static constexpr std::size_t kSides = 4;
+  static constexpr std::int32_t kNone = -1;
 
   struct Moments {
     double count = 0.0;
@@ -66,10 +79,14 @@ class LocalMap::Impl {
     bool is_line = false;
     bool is_known = false;
   };
-  /// What is known of a cell's surroundings: of each side, and of all of them together.
-  struct Surroundings {
-    std::array<Distribution, kSides + 1> of_side;
-    std::uint8_t settled = 0;  ///< a bit for each side: no point came since it was worked out
+  /// A cell in use: where what is known of it stands. Most have a face or two, and their neighbours
+  /// no points of their own, so that places are given to those that are asked for.
+  struct Slot {
+    /// Of each side, in moments_.
+    std::array<std::int32_t, kSides> moments = {kNone, kNone, kNone, kNone};
+    /// Of the surroundings, in known_: of each side, and of all of them together.
+    std::array<std::int32_t, kSides + 1> known = {kNone, kNone, kNone, kNone, kNone};
+    std::uint8_t settled = 0;  ///< a bit for each of `known`: no point came since it was worked out
   };
   using Cell = CellSlots::Cell;
 
@@ -77,6 +94,7 @@ class LocalMap::Impl {
                   const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
   bool FindCell(double x, double y, Cell* cell) const;
   std::size_t AddSlot(Cell cell);
+  Moments& MomentsOf(std::int32_t& at);
   std::vector<std::uint8_t> SidesOf(const FacedPoints& points, double theta) const;
   std::size_t MarkAround(Cell cell, std::size_t side);
   const Distribution& Seen(std::size_t slot, std::size_t side) const;
@@ -92,8 +110,9 @@ class LocalMap::Impl {
   double front_rad_ = 0.0;  ///< surfaces that face within 90 deg of it are in front
   Eigen::Vector2d corner_;  ///< of cell (0, 0), in map
   CellSlots slots_;
-  std::vector<Moments> moments_;             ///< of each slot, side by side
-  mutable std::vector<Surroundings> known_;  ///< of each slot, worked out where it is looked at
+  mutable std::vector<Slot> in_use_;         ///< of each slot of slots_
+  std::vector<Moments> moments_;             ///< in order of their first points
+  mutable std::vector<Distribution> known_;  ///< worked out where it is looked at
   std::size_t scans_ = 0;
 };
 
@@ -126,11 +145,16 @@ bool LocalMap::Impl::FindCell(double x, double y, Cell* cell) const {
 
 std::size_t LocalMap::Impl::AddSlot(Cell cell) {
   const std::size_t slot = slots_.Use(cell);
-  if (slot == known_.size()) {
-    moments_.resize(moments_.size() + kSides);
-    known_.emplace_back();
-  }
+  if (slot == in_use_.size()) in_use_.emplace_back();
   return slot;
+}
+
+LocalMap::Impl::Moments& LocalMap::Impl::MomentsOf(std::int32_t& at) {
+  if (at == kNone) {
+    at = static_cast<std::int32_t>(moments_.size());
+    moments_.emplace_back();
+  }
+  return moments_[static_cast<std::size_t>(at)];
 }
 
 std::vector<std::uint8_t> LocalMap::Impl::SidesOf(const FacedPoints& points, double theta) const {
@@ -167,7 +191,7 @@ void LocalMap::Impl::Add(const FacedPoints& points_in_robot, const Pose2& T_map_
     }
     const double dx = x - (corner_.x() + (cell.column + 0.5) * options_.cell_m);
     const double dy = y - (corner_.y() + (cell.row + 0.5) * options_.cell_m);
-    Moments& moments = moments_[kSides * slot + sides[i]];
+    Moments& moments = MomentsOf(in_use_[slot].moments[sides[i]]);
     moments.count += 1.0;
     moments.x += dx;
     moments.y += dy;
@@ -184,7 +208,7 @@ std::size_t LocalMap::Impl::MarkAround(Cell cell, std::size_t side) {
   const auto kept = static_cast<std::uint8_t>(~((1U << side) | (1U << kSides)));
   for (int dy = -window; dy <= window; ++dy) {
     for (int dx = -window; dx <= window; ++dx) {
-      known_[AddSlot({cell.column + dx, cell.row + dy})].settled &= kept;
+      in_use_[AddSlot({cell.column + dx, cell.row + dy})].settled &= kept;
     }
   }
   return static_cast<std::size_t>(slots_.SlotOf(cell));
@@ -200,8 +224,9 @@ LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t side) c
       if (!slots_.Contains(neighbour)) continue;
       const std::int32_t slot = slots_.SlotOf(neighbour);
       if (slot < 0) continue;
-      const Moments& m = moments_[kSides * static_cast<std::size_t>(slot) + side];
-      if (m.count == 0.0) continue;
+      const std::int32_t at = in_use_[static_cast<std::size_t>(slot)].moments[side];
+      if (at == kNone) continue;
+      const Moments& m = moments_[static_cast<std::size_t>(at)];
       const double ox = dx * options_.cell_m;
       const double oy = dy * options_.cell_m;
       sum.count += m.count;
@@ -241,9 +266,13 @@ void LocalMap::Impl::Describe(const Moments& sum, Cell cell, Distribution& d) co
 
 const LocalMap::Impl::Distribution& LocalMap::Impl::Settled(std::size_t slot,
                                                             std::size_t side) const {
-  Distribution& known = known_[slot].of_side[side];
-  if ((known_[slot].settled >> side & 1U) != 0) return known;
-  known_[slot].settled |= static_cast<std::uint8_t>(1U << side);
+  static const Distribution kNothing;
+  Slot& in_use = in_use_[slot];
+  std::int32_t& at = in_use.known[side];
+  if ((in_use.settled >> side & 1U) != 0) {
+    return at == kNone ? kNothing : known_[static_cast<std::size_t>(at)];
+  }
+  in_use.settled |= static_cast<std::uint8_t>(1U << side);
   const Cell cell = slots_.CellOf(slot);
   Moments sum;
   if (side < kSides) {
@@ -251,7 +280,13 @@ const LocalMap::Impl::Distribution& LocalMap::Impl::Settled(std::size_t slot,
   } else {
     for (std::size_t one = 0; one < kSides; ++one) sum += SumAround(cell, one);
   }
-  if (sum.count > 0.0) Describe(sum, cell, known);
+  if (sum.count == 0.0) return kNothing;
+  if (at == kNone) {
+    at = static_cast<std::int32_t>(known_.size());
+    known_.emplace_back();
+  }
+  Distribution& known = known_[static_cast<std::size_t>(at)];
+  Describe(sum, cell, known);
   return known;
 }
 
