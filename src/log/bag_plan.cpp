@@ -78,7 +78,7 @@ class TopicChoice {
   /// Who records scans besides clouds maps by the scans; clouds stand in where they are named, or
   /// alone.
   std::set<TopicKind> Scanners(const LogOptions& options) const {
-    const std::set<TopicKind> flat = {TopicKind::kScan, TopicKind::kMultiEcho};
+    std::set<TopicKind> flat = {TopicKind::kScan, TopicKind::kMultiEcho};
     const bool has_flat = std::any_of(kinds_.begin(), kinds_.end(), [&flat](const auto& topic) {
       return flat.count(topic.second) > 0;
     });

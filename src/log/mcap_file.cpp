@@ -19,7 +19,7 @@ constexpr std::size_t kMostOpen = 64;
 /// "sensor_msgs/msg/LaserScan", or what else it is in words: then it is counted, not read.
 std::string TypeOf(const McapChannel& channel, const std::map<std::uint16_t, McapSchema>& schemas) {
   const auto schema = schemas.find(channel.schema);
-  const std::string name = schema == schemas.end() ? "no schema" : schema->second.name;
+  std::string name = schema == schemas.end() ? "no schema" : schema->second.name;
   const std::string& encoding = channel.message_encoding;
   if (encoding == "cdr" || encoding == "ros1") return name;
   return name + " as " + (encoding.empty() ? "something unsaid" : encoding);

@@ -143,7 +143,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   const Alignment aligned = AlignUnlessOverruled(view.Points(), path_.T_map_robot, predicted.prior);
   inlier_share_ = aligned.inlier_share;
   const bool is_believed = Believe(aligned, predicted, must_match);
-  const UncertainPose2 step =
+  UncertainPose2 step =
       is_believed ? Fuse(aligned, predicted, T_map_last) : GoOnByWheels(T_last_now.mean, predicted);
   lost_ = is_believed ? 0 : lost_ + 1;
   path_.T_map_matched = path_.T_map_robot;

@@ -89,8 +89,9 @@ class BoxesSearch {
 
   Box BoxAt(std::int32_t angle, std::int32_t x, std::int32_t y) const {
     const std::int32_t side = 2 * half_box_ + 1;
-    return {box_of_angle_[static_cast<std::size_t>(angle + grid_.half_angle)],
-            (x + grid_.half_x + half_box_) / side, (y + grid_.half_y + half_box_) / side};
+    const std::int32_t place = angle + grid_.half_angle;
+    return {box_of_angle_[static_cast<std::size_t>(place)], (x + grid_.half_x + half_box_) / side,
+            (y + grid_.half_y + half_box_) / side};
   }
 
   // Whether all boxes that it reaches into are: four at most, as it is no larger than one.

@@ -21,7 +21,7 @@ struct Named {
   SpaceLidarModel model;
 };
 constexpr std::array<Named, 3> kModels = {{{"vlp16", SpaceLidarModel::kVlp16},
-                                           {"os1-32", SpaceLidarModel::kOs1_32},
+                                           {"os1-32", SpaceLidarModel::kOs132},
                                            {"mid360", SpaceLidarModel::kMid360}}};
 
 /// Rings that turn about an upright axis.
@@ -32,7 +32,7 @@ struct Spinner {
   double highest_deg = 15.0;
 };
 constexpr Spinner kVlp16{16, 1800, -15.0, 15.0};
-constexpr Spinner kOs1_32{32, 1024, -22.5, 22.5};
+constexpr Spinner kOs132{32, 1024, -22.5, 22.5};
 
 // One whose pattern never repeats; here two sequences of golden ratios.
 constexpr int kPointsOfMid360 = 20000;
@@ -111,7 +111,7 @@ std::vector<std::string> SpaceLidarNames() {
 SpaceLidarOptions OptionsOf(SpaceLidarModel model) {
   SpaceLidarOptions options;
   options.model = model;
-  if (model == SpaceLidarModel::kOs1_32) {
+  if (model == SpaceLidarModel::kOs132) {
     options.max_range = 90.0;
     options.sigma = 0.01;
     options.layout = CloudLayout::kOuster;
@@ -157,7 +157,7 @@ std::vector<SpaceLidar::Ray> SpaceLidar::Rays() {
     }
     return rays;
   }
-  const Spinner& spinner = options_.model == SpaceLidarModel::kVlp16 ? kVlp16 : kOs1_32;
+  const Spinner& spinner = options_.model == SpaceLidarModel::kVlp16 ? kVlp16 : kOs132;
   for (int column = 0; column < spinner.columns; ++column) {
     for (int ring = 0; ring < spinner.rings; ++ring) {
       const double up = spinner.lowest_deg +

@@ -46,7 +46,7 @@ class DriveTest : public ::testing::Test {
       map_.graph.AddFloor(floor);
     }
     const Building hall = Hall();
-    SpaceLidarOptions options = OptionsOf(SpaceLidarModel::kOs1_32);
+    SpaceLidarOptions options = OptionsOf(SpaceLidarModel::kOs132);
     SpaceLidar lidar(hall, options, LidarNoise::None(), 1);
     double time = 1.0;
     for (const FloorId floor : {0, 1}) {

@@ -79,7 +79,7 @@ TEST_P(EveryModelTest, NoiseIsThatOfTheLidarAndSeedsRepeat) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryModelTest,
-                         ::testing::Values(SpaceLidarModel::kVlp16, SpaceLidarModel::kOs1_32,
+                         ::testing::Values(SpaceLidarModel::kVlp16, SpaceLidarModel::kOs132,
                                            SpaceLidarModel::kMid360));
 
 TEST(SpaceLidarTest, ATurningRobotBendsTheSweepByItsTimes) {

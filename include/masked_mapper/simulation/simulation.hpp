@@ -64,7 +64,7 @@ struct LidarNoise {
   static LidarNoise None();
 };
 
-enum class SpaceLidarModel { kVlp16, kOs1_32, kMid360 };
+enum class SpaceLidarModel { kVlp16, kOs132, kMid360 };
 /// By the names of the command line; empty: none of them.
 std::optional<SpaceLidarModel> SpaceLidarCalled(const std::string& name);
 std::vector<std::string> SpaceLidarNames();
