@@ -83,11 +83,29 @@ double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& op
          tally.contradicting * std::log((1.0 - right) / (1.0 - agrees_wrong));
 }
 
+namespace {
+
+// How likely it is that so many patches are of a share, and so many are not.
+double NatsOfShare(const UnknownShare& share, int with, int without) {
+  const auto log_beta = [](double a, double b) {
+    return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
+  };
+  return log_beta(share.with + with, share.without + without) - log_beta(share.with, share.without);
+}
+
+}  // namespace
+
+double NatsOfWay(const Tally& tally, const EvidenceOptions& options) {
+  const double wrong = options.agrees_elsewhere;
+  return NatsOfShare(options.strays_in_place, tally.contradicting, tally.agreeing) -
+         tally.agreeing * std::log(wrong) - tally.contradicting * std::log(1.0 - wrong);
+}
+
 void WayOffTheMap::Add(PatchFit fit, double at_m, const EvidenceOptions& options) {
   constexpr double kLook = 3.0;   // m
   constexpr int kLeast = 5;       // patches
-  constexpr double kShare = 0.8;  // of them, of which the map says nothing: rooms seen through a
-                                  // door are fewer
+  constexpr int kMuch = 20;       // patches, which tell before a look is over
+  constexpr double kShare = 0.5;  // of them, of which the map says nothing: most
   if (at_m >= look_begins_m_ + kLook) {
     if (known_ + unknown_ >= kLeast) {
       const bool is_off = unknown_ > kShare * (known_ + unknown_);
@@ -101,6 +119,9 @@ void WayOffTheMap::Add(PatchFit fit, double at_m, const EvidenceOptions& options
     known_ = unknown_ = 0;
   }
   ++(fit == kMapSaysNothing ? unknown_ : known_);
+  const int seen = known_ + unknown_;
+  const bool leaves = !is_off_ && seen >= kMuch && unknown_ > kShare * seen;
+  leaves_nats_ = leaves ? std::log(kLook * options.leaves_map_per_m) : 0.0;
 }
 
 double SlipNats(double slip_m, double way_m) {
@@ -158,21 +179,18 @@ double NatsOfFirst(const PairTally& tally, const EvidenceOptions& options) {
   const double first = Nats(at_first, right) + Nats(tally.first_only, right);
   const double unrelated = first + Nats(at_second, options.agrees_elsewhere) +
                            Nats(tally.second_only, options.agrees_elsewhere);
-  // Of copies, which of the two agrees is a question of its own; and that they are copies where the
-  // map shows only one of them is less likely the farther it goes beyond where it shows both (rule
-  // of succession).
+  // Of copies, which of the two agrees is a question of its own. What only one of them shows goes
+  // on to be a copy, or not, as what both show is one.
   const int different = tally.first + tally.second;
-  const int shared = tally.both + tally.neither + different;
-  const int beyond = tally.second_only.agreeing + tally.second_only.contradicting;
-  const double goes_on = std::log((shared + 1.0) / (shared + beyond + 1.0));
-  const double alike = Nats({tally.both, tally.neither}, right) + Nats(tally.first_only, right) +
-                       Nats(tally.second_only, right) +
-                       (tally.both + tally.neither) * std::log(1.0 - options.differs_in_copies) +
-                       different * std::log(options.differs_in_copies);
-  const double by_noise = alike + different * std::log(0.5);
-  const double told_apart = alike + tally.first * std::log(options.speaks_for_right) +
+  const int alike = tally.both + tally.neither + tally.second_only.agreeing;
+  const double seen = Nats({tally.both, tally.neither}, right) + Nats(tally.first_only, right) +
+                      Nats(tally.second_only, right);
+  const double by_noise =
+      NatsOfShare(options.differs_by_noise, different, alike) + different * std::log(0.5);
+  const double told_apart = NatsOfShare(options.differs_in_copies, different, alike) +
+                            tally.first * std::log(options.speaks_for_right) +
                             tally.second * std::log(1.0 - options.speaks_for_right);
-  return LogSum(unrelated, LogSum(by_noise, told_apart) + goes_on - options.copy_nats);
+  return LogSum(unrelated, seen + LogSum(by_noise, told_apart) - options.copy_nats);
 }
 
 }  // namespace

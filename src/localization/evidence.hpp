@@ -6,9 +6,10 @@
 // there. In the right place nearly all agree, in one that looks alike many. Of two rivals, either
 // what one of them shows has nothing to do with the other; or the one is a copy of the other (the
 // floors of a tower): then what agrees with the one nearly always agrees with the other. Patches
-// that do not are noise, which speaks for either copy alike, or they are what tells the two apart,
-// and then nearly all speak for the one. Which of these it is, is weighed along. Evidence is
-// counted in nats, the logarithm of how many times likelier.
+// that do not are noise, which is rare and speaks for either copy alike, or they are what tells the
+// two apart, and then nearly all speak for the one. Which of these it is, is weighed along; and so
+// is how large the share of each is, which nobody knows beforehand. Evidence is counted in nats,
+// the logarithm of how many times likelier.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +20,24 @@
 
 namespace masked_mapper {
 
+/// A share that nobody knows: as if so many patches had been seen before.
+struct UnknownShare {
+  double with = 1.0;
+  double without = 1.0;
+};
+
 struct EvidenceOptions {
-  double agrees_in_place = 0.8;    ///< share of patches that agree, in the right place
-  double agrees_elsewhere = 0.5;   ///< in a wrong one that looks alike
-  double agrees_anywhere = 0.35;   ///< in a wrong one as good as any other
-  double believed_nats = 9.2;      ///< of a place against all others: ten thousand to one
-  double speaks_for_right = 0.9;   ///< share of the patches that tell two copies apart
-  double differs_in_copies = 0.1;  ///< share of patches that agree with one of two copies alone
-  double told_apart_nats = 7.0;    ///< of a place against one other: a thousand to one
-  double copy_nats = 9.0;          ///< by which a pair of places is likelier not to be copies
+  double agrees_in_place = 0.8;              ///< share of patches that agree, in the right place
+  double agrees_elsewhere = 0.5;             ///< in a wrong one that looks alike
+  double agrees_anywhere = 0.35;             ///< in a wrong one as good as any other
+  double believed_nats = 9.2;                ///< of a place against all others: ten thousand to one
+  double speaks_for_right = 0.9;             ///< share of the patches that tell two copies apart
+  UnknownShare strays_in_place{2.0, 8.0};    ///< patches that do not agree in the right place
+  UnknownShare differs_by_noise{1.0, 30.0};  ///< patches that agree with one of two copies alone,
+                                             ///< though they are the same
+  UnknownShare differs_in_copies{1.0, 9.0};  ///< and where something tells the two apart
+  double told_apart_nats = 7.0;              ///< of a place against one other: a thousand to one
+  double copy_nats = 9.0;  ///< by which a pair of places is likelier not to be copies
   double leaves_map_per_m =
       0.005;                       ///< of a robot: how likely it is to go where the map has nothing
   double comes_back_per_m = 0.05;  ///< and back
@@ -56,6 +66,10 @@ struct Tally {
 /// How much likelier the right place made them than a wrong one, of which `agrees_wrong` agree.
 double NatsOf(const Tally& tally, double agrees_wrong, const EvidenceOptions& options);
 
+/// The same of all that was seen along a way: how large a share agrees in the right place is one
+/// for all of it, and learnt along. A wrong one is as such that look alike are.
+double NatsOfWay(const Tally& tally, const EvidenceOptions& options);
+
 /// What of a robot's way lies where the map has nothing. That is a few stretches of many metres
 /// rather than a metre here and there: what is dear is to leave the map.
 class WayOffTheMap {
@@ -65,7 +79,7 @@ class WayOffTheMap {
 
   /// How much likelier a robot on the map is to have driven so than one that never leaves it; not
   /// above 0.
-  double nats() const { return nats_; }
+  double nats() const { return nats_ + leaves_nats_; }
 
  private:
   double look_begins_m_ = -1e9;
@@ -73,6 +87,7 @@ class WayOffTheMap {
   int unknown_ = 0;
   bool is_off_ = false;
   double nats_ = 0.0;
+  double leaves_nats_ = 0.0;  ///< of the look that goes on
 };
 
 /// A place that looks alike for a while fits on only by moving along: corridors whose doors are

@@ -82,7 +82,7 @@ class Hypotheses {
   };
   double Nats(const Hypothesis& hypothesis) const {
     return hypothesis.prior_nats + hypothesis.off_the_map.nats() + hypothesis.slip_nats +
-           NatsOf(hypothesis.tally, options_.agrees_elsewhere, options_);
+           NatsOfWay(hypothesis.tally, options_);
   }
   double NatsAgainstElsewhere() const;
   void Judge(Hypothesis& hypothesis, std::size_t first_patch) const;

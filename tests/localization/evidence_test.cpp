@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace masked_mapper {
@@ -50,20 +51,49 @@ TEST(Evidence, WhatDiffersTellsCopiesApart) {
   EXPECT_GT(LeadOf(right, copy, options), options.told_apart_nats);
 }
 
-// Where the map shows little of a place, that it is a copy of another for ever on is not for free.
+// Where the map shows little of a place, that it is a copy of another for ever on is not for free;
+// the less so the more they differ where it shows both.
 TEST(Evidence, APlaceThatIsACopyOnlyWhereTheMapHasNothingFallsBehind) {
   const EvidenceOptions options;
-  const auto lead = [&](std::size_t beyond) {
-    std::vector<PatchFit> right = Fits(26, 0);
+  const auto lead = [&](std::size_t differing, std::size_t beyond) {
+    std::vector<PatchFit> right = Fits(36, 0);
     std::vector<PatchFit> rival = right;
-    right.resize(26 + beyond, kGood);
-    rival.resize(26 + beyond, kMapSaysNothing);
+    std::fill_n(rival.begin(), differing, kBad);
+    right.resize(36 + beyond, kGood);
+    rival.resize(36 + beyond, kMapSaysNothing);
     return LeadOf(right, rival, options);
   };
-  EXPECT_LT(lead(10), lead(60));
-  EXPECT_LT(lead(60), lead(300));
-  // Rule of succession: seen to be alike 26 times, it goes on so 174 times more with 27 to 201.
-  EXPECT_NEAR(lead(174) - lead(0), std::log(201.0 / 27.0), 0.05);
+  EXPECT_LT(lead(0, 10), lead(0, 60));
+  EXPECT_LT(lead(0, 60), lead(0, 300));
+  EXPECT_LT(lead(0, 300), options.told_apart_nats);
+  EXPECT_GT(lead(4, 60) - lead(4, 0), lead(0, 60) - lead(0, 0) + 1.0);
+}
+
+// What is noise speaks for either; but noise is rare, as what both places show tells.
+TEST(Evidence, WhatDiffersMoreOftenThanNoiseTellsPlacesApart) {
+  const EvidenceOptions options;
+  std::vector<PatchFit> right = Fits(45, 0);
+  std::vector<PatchFit> rival = right;
+  std::fill_n(rival.begin(), 10, kBad);
+  right[20] = kBad;
+  EXPECT_GT(LeadOf(right, rival, options), options.told_apart_nats);
+  // As many of ten times as much may well be noise.
+  right.resize(450, kGood);
+  rival.resize(450, kGood);
+  EXPECT_LT(LeadOf(right, rival, options), options.told_apart_nats);
+}
+
+TEST(Evidence, HowMuchAgreesInTheRightPlaceIsLearntAlong) {
+  const EvidenceOptions options;
+  const auto nats_of = [&](int agreeing, int contradicting) {
+    return NatsOfWay({agreeing, contradicting}, options);
+  };
+  EXPECT_DOUBLE_EQ(nats_of(0, 0), 0.0);
+  EXPECT_NEAR(nats_of(1, 0), std::log(0.8 / 0.5), 1e-9);  // as expected beforehand
+  // The next is the likelier to agree, the more did.
+  EXPECT_GT(nats_of(41, 0) - nats_of(40, 0), nats_of(1, 0));
+  EXPECT_LT(nats_of(31, 10) - nats_of(30, 10), nats_of(1, 0));
+  EXPECT_LT(nats_of(20, 20), 0.0);
 }
 
 TEST(Evidence, ARobotIsSeldomOffTheMapAndThenForAWhile) {
@@ -80,7 +110,7 @@ TEST(Evidence, ARobotIsSeldomOffTheMapAndThenForAWhile) {
     return way.nats();
   };
   EXPECT_DOUBLE_EQ(nats_of({0, 0, 0}), 0.0);
-  EXPECT_DOUBLE_EQ(nats_of({3, 7, 5, 8}), 0.0);  // rooms seen through doors
+  EXPECT_DOUBLE_EQ(nats_of({3, 4, 5, 2}), 0.0);  // rooms seen through doors
   const double once = std::log(3.0 * options.leaves_map_per_m);
   const double on = 3.0 * std::log(1.0 - options.comes_back_per_m);
   EXPECT_NEAR(nats_of({0, 10, 10, 10, 0}), once + 2.0 * on, 1e-9);
