@@ -28,6 +28,7 @@ void Hypotheses::Restart(std::size_t scan) {
   next_search_m_ = kFirstSearch;
   search_was_complete_ = false;
   whereabouts_.clear();
+  only_floors_.clear();
   climbed_.reset();
   elsewhere_nats_ = 0.0;
 }
@@ -52,7 +53,7 @@ void Hypotheses::SuggestAround(FloorId floor, const Pose2& T_world_odom) {
 }
 
 void Hypotheses::KeepFloor(FloorId floor) {
-  only_floor_ = floor;
+  only_floors_ = {floor};
   whereabouts_.erase(std::remove_if(whereabouts_.begin(), whereabouts_.end(),
                                     [&](const auto& one) { return one.first != floor; }),
                      whereabouts_.end());
@@ -62,7 +63,6 @@ void Hypotheses::KeepFloor(FloorId floor) {
 }
 
 void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t scan) {
-  only_floor_.reset();
   if (climb_m && climbed_) {
     *climb_m += climbed_->m;
     sigma_m = std::hypot(sigma_m, climbed_->sigma_m);
@@ -85,6 +85,7 @@ void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t
     elsewhere_nats_ = std::max(elsewhere_nats_, NatsAgainstElsewhere());
   }
   hypotheses_ = std::move(after);
+  RideOn(climb_m, sigma_m);
   Whereabouts about;
   for (const auto& [before, nats] : whereabouts_) {
     for (const FloorId floor : map_.FloorsReached(before, climb_m, sigma_m)) {
@@ -98,6 +99,25 @@ void Hypotheses::Ride(std::optional<double> climb_m, double sigma_m, std::size_t
     }
   }
   whereabouts_ = std::move(about);
+}
+
+bool Hypotheses::MayBeOn(FloorId floor) const {
+  return only_floors_.empty() ||
+         std::find(only_floors_.begin(), only_floors_.end(), floor) != only_floors_.end();
+}
+
+// What was said of floors rides along. A search of those alone looked at none that are new.
+void Hypotheses::RideOn(std::optional<double> climb_m, double sigma_m) {
+  if (only_floors_.empty()) return;
+  std::set<FloorId> reached;
+  for (const FloorId floor : only_floors_) {
+    for (const FloorId other : map_.FloorsReached(floor, climb_m, sigma_m)) reached.insert(other);
+  }
+  if (reached.size() > only_floors_.size()) {
+    search_was_complete_ = false;
+    next_search_m_ = kFirstSearch;
+  }
+  only_floors_.assign(reached.begin(), reached.end());
 }
 
 // What an earlier search, which was complete, did not come upon, and fits later, must have been
@@ -220,7 +240,7 @@ void Hypotheses::Search(const Stretch& stretch) {
   double best = 0.0;
   std::vector<std::pair<FloorId, std::vector<Eigen::Vector2d>>> searched;
   for (const FloorId id : map_.floors()) {
-    if (only_floor_ && id != *only_floor_) continue;
+    if (!MayBeOn(id)) continue;
     const FloorSearch& coarse = map_.FloorAt(id)->coarse();
     std::vector<Eigen::Vector2d> thinned = coarse.Thinned(*points);
     const std::optional<PlaceFit> fit = coarse.Find(thinned);

@@ -54,7 +54,7 @@ class Hypotheses {
   void Suggest(FloorId floor, const Pose2& T_world_odom, double prior_nats);
   /// It may be about where it was held to be, straight above or below, or anywhere.
   void SuggestAround(FloorId floor, const Pose2& T_world_odom);
-  /// Only on this floor.
+  /// Only on this floor, and where rides from it lead.
   void KeepFloor(FloorId floor);
   /// It rode: `climb_m` up, give or take `sigma_m`; nothing: nobody knows. Floors alone change.
   /// Where no floor is that far, it is between floors until it rides on: on a landing of stairs.
@@ -90,6 +90,8 @@ class Hypotheses {
   void Follow(Hypothesis& hypothesis, const Stretch& stretch, std::size_t scan) const;
   using Whereabouts = std::vector<std::pair<FloorId, double>>;  ///< nats of each floor
 
+  bool MayBeOn(FloorId floor) const;
+  void RideOn(std::optional<double> climb_m, double sigma_m);
   void Search(const Stretch& stretch);
   void SearchAround(const Stretch& stretch, const UncertainPose2& T_world_robot);
   void Add(Hypothesis&& hypothesis);
@@ -105,7 +107,7 @@ class Hypotheses {
   std::vector<Hypothesis> hypotheses_;
   std::vector<SeenPatch> patches_;
   std::size_t first_scan_ = 0;
-  std::optional<FloorId> only_floor_;
+  std::vector<FloorId> only_floors_;  ///< on which it may be, as was said; empty: all
   struct Climb {
     double m = 0.0;
     double sigma_m = 0.0;

@@ -91,16 +91,19 @@ class Localizer::Impl {
       Seek();
     }
     Answer();
+    labelled_.reset();
   }
 
   // It may stand where it stood, or anywhere; what was seen before is of another stretch.
   void GoOnFromWhereItWas() {
     const std::size_t scan = answers_.Last();
     Lose(way_.carried(), scan);
-    if (!had_place_) return;
-    place_.Take(place_.floor(), Widened(T_world_robot_before_, kCarriedSigma, kCarriedSigmaDeg),
-                way_.motion());
-    SuggestHere(place_.floor());
+    if (had_place_) {
+      place_.Take(place_.floor(), Widened(T_world_robot_before_, kCarriedSigma, kCarriedSigmaDeg),
+                  way_.motion());
+      SuggestHere(place_.floor());
+    }
+    if (labelled_) hypotheses_.KeepFloor(*labelled_);
   }
 
   void SuggestHere(FloorId floor) {
@@ -122,6 +125,7 @@ class Localizer::Impl {
     for (const FloorId floor : map_.floors()) {
       const Floor& known = map_.Facts(floor);
       if (!known.label_given || known.label != label_) continue;
+      labelled_ = floor;
       if (is_held_) {
         if (place_.floor() != floor) place_.WantMatch();
         place_.SetFloor(floor);
@@ -266,6 +270,7 @@ class Localizer::Impl {
   bool is_in_cab_ = false;  ///< on the ride that goes on, or the last
   FloorId ride_floor_ = 0;  ///< left last
   std::string label_;
+  std::optional<FloorId> labelled_;  ///< the floor that was said since the last scan
   std::string why_ = "not found yet";
   double last_step_m_ = 0.0;
   double last_step_s_ = -1e9;

@@ -96,5 +96,40 @@ TEST_F(HypothesesTest, ARideThatMayHaveEndedOnTwoFloorsTellsNeither) {
   EXPECT_EQ(DriveOn(240), nullptr);
 }
 
+// A floor that was said holds where rides from there lead, and no longer than the place does.
+TEST_F(HypothesesTest, AFloorThatWasSaidHoldsUntilNobodyKnowsAnyMore) {
+  hypotheses_.KeepFloor(0);
+  const Hypothesis* found = DriveOn(240);
+  ASSERT_NE(found, nullptr) << hypotheses_.Description();
+  EXPECT_EQ(found->floor, 0);
+  hypotheses_.Ride(kStorey, 0.2, static_cast<std::size_t>(driven_));
+  found = DriveOn(60);
+  ASSERT_NE(found, nullptr) << hypotheses_.Description();
+  EXPECT_EQ(found->floor, 1);
+  hypotheses_.Ride(std::nullopt, 0.0, static_cast<std::size_t>(driven_));
+  EXPECT_EQ(DriveOn(60), nullptr);
+  hypotheses_.KeepFloor(2);
+  found = DriveOn(60);
+  ASSERT_NE(found, nullptr) << hypotheses_.Description();
+  EXPECT_EQ(found->floor, 2);
+  // Carried off: anywhere again.
+  hypotheses_.Restart(static_cast<std::size_t>(driven_));
+  stretch_.Restart();
+  EXPECT_EQ(DriveOn(240), nullptr);
+  EXPECT_GE(hypotheses_.all().size(), 3U);
+}
+
+// A search of one floor has not looked at others.
+TEST_F(HypothesesTest, ASearchOfOneFloorIsNoneOfOthers) {
+  hypotheses_.KeepFloor(0);
+  ASSERT_NE(DriveOn(240), nullptr);
+  hypotheses_.Ride(std::nullopt, 0.0, static_cast<std::size_t>(driven_));
+  EXPECT_EQ(hypotheses_.Believed(), nullptr);
+  EXPECT_EQ(DriveOn(240), nullptr);
+  for (const Hypothesis& one : hypotheses_.all()) {
+    EXPECT_GE(one.prior_nats, -known_.LogPlaces()) << "floor " << one.floor;
+  }
+}
+
 }  // namespace
 }  // namespace masked_mapper
