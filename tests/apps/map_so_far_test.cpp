@@ -125,6 +125,22 @@ TEST_F(MapSoFar, AKilledWriterLeavesTheMapOfWhatCame) {
   ExpectSamePosesAs(first_half_);
 }
 
+// A writer that stalls in the middle of a line is waited for, and both is said, once.
+TEST_F(MapSoFar, ASilentPipeIsSaidAndWaitedFor) {
+  LiveProgram program({"map", "-", "-o", folder_ / "out"}, folder_);
+  const std::string half_a_line = second_half_.substr(0, 100);
+  program.Write(first_half_ + half_a_line);
+  ASSERT_TRUE(ComesTrue([&] { return Contains(program.Err(), "nothing came for 10 s"); }))
+      << program.Err();
+  EXPECT_TRUE(IsWritten(program)) << program.Err();
+  EXPECT_FALSE(Contains(program.Err(), "goes on")) << program.Err();
+  program.Write(second_half_.substr(half_a_line.size()));
+  ASSERT_EQ(program.End(), 0) << program.Err();
+  EXPECT_TRUE(Contains(program.Err(), "goes on")) << program.Err();
+  EXPECT_FALSE(Contains(program.Err(), "cut off")) << program.Err();
+  ExpectSamePosesAs(text_);
+}
+
 TEST_F(MapSoFar, OfNothingIsSaidAndTheListeningGoesOn) {
   LiveProgram program({"map", "-", "-o", folder_ / "out"}, folder_);
   program.Write("# nothing yet\n");
