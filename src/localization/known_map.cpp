@@ -43,12 +43,12 @@ double SigmaM(const UncertainPose2& T_a_b) {
   return std::sqrt(T_a_b.covariance(0, 0) + T_a_b.covariance(1, 1));
 }
 
-KnownMap::KnownMap(const BuildingMap& map, const SearchableFloorOptions& options) : map_(map) {
-  const std::vector<std::vector<PosedScan>> scans = ScansOfFloors(map);
+KnownMap::KnownMap(const BuildingMap& map, const SearchableFloorOptions& options)
+    : map_(map), scans_(ScansOfFloors(map)) {
   double seen_m2 = 0.0;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
     const auto id = static_cast<FloorId>(i);
-    auto floor = std::make_unique<SearchableFloor>(scans[i], id, options);
+    auto floor = std::make_unique<SearchableFloor>(scans_[i], id, options);
     if (floor->HasFloor()) {
       seen_m2 += KnownArea(floor->seen());
       ids_.push_back(id);

@@ -34,6 +34,10 @@ class KnownMap {
   const SearchableFloor* FloorAt(FloorId floor) const {
     return floor < 0 ? nullptr : floors_[static_cast<std::size_t>(floor)].get();
   }
+  /// Those of a floor, a few a metre.
+  const std::vector<PosedScan>& ScansOf(FloorId floor) const {
+    return scans_[static_cast<std::size_t>(floor)];
+  }
   const Floor& Facts(FloorId floor) const { return map_.graph.floor(floor); }
 
   /// Nodes on a floor within `within_m` of a point in world, the nearest first.
@@ -50,6 +54,7 @@ class KnownMap {
 
  private:
   const BuildingMap& map_;
+  std::vector<std::vector<PosedScan>> scans_;             ///< by FloorId
   std::vector<std::unique_ptr<SearchableFloor>> floors_;  ///< by FloorId
   std::vector<FloorId> ids_;
   double log_places_ = 0.0;

@@ -66,7 +66,10 @@ class Localizer::Impl {
   }
 
   const Localization& result() const { return answers_.result(); }
-  std::vector<MapChange> Changes() const { return changes_.Find(); }
+  std::vector<MapChange> Changes() const {
+    return changes_.Find(
+        [&](FloorId floor) -> const std::vector<PosedScan>& { return map_.ScansOf(floor); });
+  }
 
   std::string Doubt() const {
     if (answers_.IsSure()) return {};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace masked_mapper {
 namespace {
@@ -48,7 +47,7 @@ void ChangeFinder::Vote(ChangeKind kind, FloorId floor, const Eigen::Vector2d& p
   Votings& votings = votes_[{floor, kind}];
   // What is as it was is counted only where something was held against it.
   const auto known = votings.find(cell);
-  if (known == votings.end() && !changed) return;
+  if (known == votings.end() && (!changed || asks_of_known_cells_)) return;
   Votes& votes = known == votings.end() ? votings[cell] : known->second;
   if (std::hypot(votes.last_x - T_world_robot.x, votes.last_y - T_world_robot.y) < kApart) return;
   votes.last_x = static_cast<float>(T_world_robot.x);
@@ -60,6 +59,7 @@ void ChangeFinder::Vote(ChangeKind kind, FloorId floor, const Eigen::Vector2d& p
 
 void ChangeFinder::Observe(const LaserScan& scan, const SearchableFloor& floor,
                            const Pose2& T_world_robot) {
+  floors_[floor.floor()] = &floor;
   const OccupancyGrid& grid = floor.seen();
   const Pose2 T_world_laser = T_world_robot * scan.T_robot_laser;
   for (std::size_t beam = 0; beam < scan.size(); ++beam) {
@@ -84,14 +84,60 @@ void ChangeFinder::Observe(const LaserScan& scan, const SearchableFloor& floor,
   }
 }
 
-std::vector<MapChange> ChangeFinder::Find() const {
-  std::vector<MapChange> changes;
+std::map<ChangeFinder::Where, std::set<ChangeFinder::Cell>> ChangeFinder::ChangedCells() const {
+  std::map<Where, std::set<Cell>> changed;
   for (const auto& [where, votings] : votes_) {
-    std::set<Cell> changed;
     for (const auto& [cell, votes] : votings) {
       const int all = votes.changed + votes.as_it_was;
-      if (votes.changed >= kLeastVotes && votes.changed >= kLeastShare * all) changed.insert(cell);
+      if (votes.changed < kLeastVotes || votes.changed < kLeastShare * all) continue;
+      changed[where].insert(cell);
     }
+  }
+  return changed;
+}
+
+// The map's own scans vote on the cells that are voted on.
+void ChangeFinder::AskMap(const ScansOfFloor& scans) {
+  for (const auto& [id, floor] : floors_) {
+    std::vector<Eigen::Vector2d> asked;
+    for (const auto& [where, votings] : votes_) {
+      if (where.first != id) continue;
+      for (const auto& [cell, votes] : votings) {
+        asked.emplace_back(kCell * (cell.first + 0.5), kCell * (cell.second + 0.5));
+      }
+    }
+    for (const PosedScan& own : scans(id)) {
+      const Eigen::Vector2d at = own.T_world_robot.Translation();
+      const bool is_near = std::any_of(asked.begin(), asked.end(), [&](const Eigen::Vector2d& one) {
+        return (one - at).norm() < kFarthest + 1.0;
+      });
+      if (is_near) Observe(*own.scan, *floor, own.T_world_robot);
+    }
+  }
+}
+
+// What is as it was for most of what was seen of it.
+void ChangeFinder::Forget(std::map<Where, std::set<Cell>>& changed) const {
+  for (const auto& [where, votings] : votes_) {
+    for (const auto& [cell, votes] : votings) {
+      const int all = votes.changed + votes.as_it_was;
+      if (votes.changed > (1.0 - kLeastShare) * all) changed[where].erase(cell);
+    }
+  }
+}
+
+std::vector<MapChange> ChangeFinder::Find(const ScansOfFloor& scans) const {
+  std::map<Where, std::set<Cell>> all_changed = ChangedCells();
+  ChangeFinder before;
+  before.floors_ = floors_;
+  before.asks_of_known_cells_ = true;
+  for (const auto& [where, cells] : all_changed) {
+    for (const Cell& cell : cells) before.votes_[where][cell];
+  }
+  before.AskMap(scans);
+  before.Forget(all_changed);
+  std::vector<MapChange> changes;
+  for (auto& [where, changed] : all_changed) {
     while (!changed.empty()) {  // one region after the other, over gaps of a cell
       std::vector<Cell> region{*changed.begin()};
       changed.erase(changed.begin());

@@ -40,6 +40,46 @@ TEST_F(LocalizerTest, FindsARobotAndHoldsIt) {
   }
 }
 
+// What was taken away and what was put up is reported where it is, and no more than that.
+TEST_F(LocalizerTest, ReportsWhatHasChanged) {
+  const Walls room = Room(14.0, 9.0);
+  const BuildingMap map = MapOf(Drive(room, 0, 320, 0.0));
+  const auto changes_of = [&](const Walls& walls) {
+    Localizer localizer(map, "always", Usual());
+    constexpr std::size_t kAsBefore = 320;  // scans
+    const std::vector<LaserScan> before = Drive(room, 0, 960, 1e5);
+    const std::vector<LaserScan> after = Drive(walls, 0, 960, 1e5);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      localizer.Observe(i < kAsBefore ? before[i] : after[i]);
+    }
+    EXPECT_TRUE(localizer.result().found) << localizer.Doubt();
+    return localizer.Changes();
+  };
+  EXPECT_TRUE(changes_of(room).empty());
+  Walls changed;
+  for (const Wall& wall : room) {
+    const Eigen::Vector2d away = 0.5 * (wall.from + wall.to) - Eigen::Vector2d(6.25, 7.875);
+    if (away.norm() > 1.0) changed.push_back(wall);
+  }
+  ASSERT_EQ(changed.size(), room.size() - 4);
+  const Eigen::Vector2d new_from(8.5, 7.6);
+  const Eigen::Vector2d new_to(10.5, 7.9);
+  changed.push_back({new_from, new_to});
+  // The world is the first pose of the drive.
+  const Pose2 T_room_world = DrivenPose(0);
+  int found_new = 0;
+  int found_gone = 0;
+  for (const MapChange& change : changes_of(changed)) {
+    const Eigen::Vector2d at = T_room_world * Eigen::Vector2d(change.x, change.y);
+    const Eigen::Vector2d where =
+        change.kind == ChangeKind::kNew ? 0.5 * (new_from + new_to) : Eigen::Vector2d(6.25, 7.7);
+    EXPECT_LT((at - where).norm(), 1.2) << Name(change.kind) << " " << at.transpose();
+    ++(change.kind == ChangeKind::kNew ? found_new : found_gone);
+  }
+  EXPECT_EQ(found_new, 1);
+  EXPECT_EQ(found_gone, 1);
+}
+
 TEST_F(LocalizerTest, DoesNotFindARobotOfAnotherBuilding) {
   const BuildingMap map = MapOf(Drive(Room(14.0, 9.0), 0, 320, 0.0));
   Walls other{{{-3, -8}, {17, -9}},

@@ -56,14 +56,16 @@ inline double RangeTo(const Walls& walls, const Eigen::Vector2d& origin, double 
   return nearest;
 }
 
+/// In the room, of scan `i` of a drive.
+inline Pose2 DrivenPose(int i) {
+  const double turn = 0.02 * i;
+  return {7.0 + 4.5 * std::cos(turn), 4.0 + 1.6 * std::sin(turn),
+          std::atan2(1.6 * std::cos(turn), -4.5 * std::sin(turn))};
+}
+
 /// Round and round through the room, from a corner of the way on; odometry begins at zero.
 inline std::vector<LaserScan> Drive(const Walls& walls, int first, int scans, double stamp) {
-  const auto pose_at = [](int i) {
-    const double turn = 0.02 * i;
-    return Pose2{7.0 + 4.5 * std::cos(turn), 4.0 + 1.6 * std::sin(turn),
-                 std::atan2(1.6 * std::cos(turn), -4.5 * std::sin(turn))};
-  };
-  const Pose2 T_room_odom = pose_at(first);
+  const Pose2 T_room_odom = DrivenPose(first);
   std::vector<LaserScan> log;
   for (int i = first; i < first + scans; ++i) {
     LaserScan scan;
@@ -71,7 +73,7 @@ inline std::vector<LaserScan> Drive(const Walls& walls, int first, int scans, do
     scan.first_angle = -0.75 * M_PI;
     scan.angle_step = 1.5 * M_PI / 360.0;
     scan.max_range = 30.0F;
-    const Pose2 T_room_robot = pose_at(i);
+    const Pose2 T_room_robot = DrivenPose(i);
     scan.T_odom_robot = Between(T_room_odom, T_room_robot);
     for (int beam = 0; beam <= 360; ++beam) {
       const double angle = T_room_robot.theta + scan.Angle(static_cast<std::size_t>(beam));
