@@ -49,7 +49,8 @@ double HeldPlace::DoubtBy(const LaserScan& scan, const MotionEstimator& motion) 
   for (const Patch& patch : HitsOf(scan, motion.T_odom_robot())) {
     tally.Add(FitOf(patch, *map_.FloorAt(floor_), T_world_odom));
   }
-  return -NatsOf(tally, evidence_.agrees_anywhere, evidence_);
+  // Where it would be instead is likely to look alike: else it were not held here.
+  return -NatsOf(tally, evidence_.agrees_elsewhere, evidence_);
 }
 
 // The sum of all evidence against the place since it last spoke for it. Whole scans are asked: of
@@ -61,8 +62,8 @@ bool HeldPlace::Agrees(const LaserScan& scan, Mask& mask, MotionEstimator& motio
   constexpr double kLookAround = 0.3;  // m
   constexpr double kLookAroundDeg = 3.0;
   if (!Match(scan, Widened(Robot(motion), kLookAround, kLookAroundDeg), mask, motion)) return false;
-  doubt_nats_ = std::max(0.0, DoubtBy(scan, motion));
-  return doubt_nats_ < evidence_.believed_nats;
+  doubt_nats_ = 0.0;
+  return DoubtBy(scan, motion) <= 0.0;
 }
 
 }  // namespace masked_mapper

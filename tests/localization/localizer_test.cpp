@@ -80,6 +80,37 @@ TEST_F(LocalizerTest, ReportsWhatHasChanged) {
   EXPECT_EQ(found_gone, 1);
 }
 
+// Carried a quarter of the way round between two scans, and neither clock nor wheels tell.
+TEST_F(LocalizerTest, FindsARobotAgainThatWasCarriedUnnoticed) {
+  const Walls room = Room(14.0, 9.0);
+  const BuildingMap map = MapOf(Drive(room, 0, 320, 0.0));
+  constexpr std::size_t kCarried = 400;  // scan
+  constexpr std::size_t kLeftOut = 75;
+  std::vector<LaserScan> log = Drive(room, 0, 1200, 1e5);
+  std::vector<Pose2> truth;
+  for (const LaserScan& scan : log) truth.push_back(*scan.T_odom_robot);
+  truth.erase(truth.begin() + kCarried, truth.begin() + kCarried + kLeftOut);
+  log.erase(log.begin() + kCarried, log.begin() + kCarried + kLeftOut);
+  const Pose2 T_odom_leap = *log[kCarried - 1].T_odom_robot * Inverse(truth[kCarried]);
+  for (std::size_t i = kCarried; i < log.size(); ++i) {
+    log[i].T_odom_robot = T_odom_leap * truth[i];
+    log[i].stamp -= 0.2 * kLeftOut;
+  }
+  Localizer localizer(map, "always", Usual());
+  for (const LaserScan& scan : log) localizer.Observe(scan);
+  const std::vector<LocatedScan>& scans = localizer.result().scans;
+  EXPECT_TRUE(scans[kCarried - 1].sure);
+  EXPECT_TRUE(scans.back().sure) << localizer.Doubt();
+  constexpr std::size_t kNoticed = 15;  // scans, three seconds
+  bool was_unsure = false;
+  for (std::size_t i = kCarried + kNoticed; i < scans.size(); ++i) {
+    was_unsure |= !scans[i].sure;
+    if (!scans[i].sure) continue;
+    EXPECT_LT(Distance(scans[i].T_world_robot.mean, truth[i]), 0.5) << i;
+  }
+  EXPECT_TRUE(was_unsure);
+}
+
 TEST_F(LocalizerTest, DoesNotFindARobotOfAnotherBuilding) {
   const BuildingMap map = MapOf(Drive(Room(14.0, 9.0), 0, 320, 0.0));
   Walls other{{{-3, -8}, {17, -9}},
