@@ -87,7 +87,7 @@ SquaredMap Squared(const BuildingMap& map, const HandoverOptions& options) {
       const std::vector<WallLine> lines = FitWallLines(grid);
       all.insert(all.end(), lines.begin(), lines.end());
     }
-    squared.T_squared_world = {0.0, 0.0, -WallDirection(all).value_or(0.0)};
+    squared.T_squared_world = {0.0, 0.0, -DirectionOf(all).value_or(WallDirection{}).angle};
     MoveMap(squared.T_squared_world, squared.map);
   }
   squared.grids = RenderFloors(squared.map, options.drawing.grid);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -204,25 +205,24 @@ class LineFitter {
   std::vector<WallLine> lines_;
 };
 
-}  // namespace
+constexpr double kQuarter = M_PI / 2.0;
+constexpr double kSameDirectionDeg = 1.5;  // more than the width of a bin
 
-std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options) {
-  return LineFitter(grid, options).Fit();
+/// A long wall tells its direction better, by the square of its length and more of it.
+double WeightOf(const WallLine& line) { return (line.b - line.a).squaredNorm(); }
+
+double AngleOf(const WallLine& line) {
+  const Eigen::Vector2d way = line.b - line.a;
+  return std::atan2(way.y(), way.x());
 }
 
-std::optional<double> WallDirection(const std::vector<WallLine>& lines) {
-  constexpr double kQuarter = M_PI / 2.0;
+/// Of directions within a quarter turn, the bin that has most.
+std::optional<double> PeakOf(const std::vector<WallLine>& lines) {
   constexpr std::size_t kBins = 180;
-  // A long wall tells its direction better, by the square of its length and more of it.
-  const auto weight = [](const WallLine& line) { return (line.b - line.a).squaredNorm(); };
-  const auto angle = [](const WallLine& line) {
-    const Eigen::Vector2d way = line.b - line.a;
-    return std::atan2(way.y(), way.x());
-  };
   std::array<double, kBins> bins{};
   for (const WallLine& line : lines) {
-    const double turned = std::remainder(angle(line), kQuarter) / kQuarter + 0.5;
-    bins[std::min(kBins - 1, static_cast<std::size_t>(turned * kBins))] += weight(line);
+    const double turned = std::remainder(AngleOf(line), kQuarter) / kQuarter + 0.5;
+    bins[std::min(kBins - 1, static_cast<std::size_t>(turned * kBins))] += WeightOf(line);
   }
   std::size_t best = 0;
   const auto around = [&](std::size_t bin) {
@@ -232,17 +232,72 @@ std::optional<double> WallDirection(const std::vector<WallLine>& lines) {
     if (around(bin) > around(best)) best = bin;
   }
   if (around(best) <= 0.0) return std::nullopt;
-  const double peak = ((static_cast<double>(best) + 0.5) / kBins - 0.5) * kQuarter;
-  double sum = 0.0;
-  double weights = 0.0;
+  return ((static_cast<double>(best) + 0.5) / kBins - 0.5) * kQuarter;
+}
+
+/// A wall of about the direction that most have.
+struct ParallelWall {
+  double off = 0.0;  ///< rad
+  double weight = 0.0;
+};
+
+/// In order of `off`.
+std::vector<ParallelWall> ParallelWalls(const std::vector<WallLine>& lines, double angle) {
+  std::vector<ParallelWall> walls;
   for (const WallLine& line : lines) {
-    const double off = std::remainder(angle(line) - peak, kQuarter);
-    if (std::abs(off) > DegToRad(1.5)) continue;
-    sum += weight(line) * off;
-    weights += weight(line);
+    const double off = std::remainder(AngleOf(line) - angle, kQuarter);
+    if (std::abs(off) > DegToRad(kSameDirectionDeg)) continue;
+    walls.push_back({off, WeightOf(line)});
   }
-  const double direction = std::remainder(peak + sum / weights, kQuarter);
-  return direction <= -kQuarter / 2.0 ? direction + kQuarter : direction;
+  std::stable_sort(walls.begin(), walls.end(),
+                   [](const ParallelWall& a, const ParallelWall& b) { return a.off < b.off; });
+  return walls;
+}
+
+double WeightOfAll(const std::vector<ParallelWall>& walls) {
+  return std::accumulate(walls.begin(), walls.end(), 0.0,
+                         [](double sum, const ParallelWall& wall) { return sum + wall.weight; });
+}
+
+/// That of the walls in order, below which this share of their weight lies.
+double Quantile(const std::vector<ParallelWall>& walls, double share) {
+  double left = share * WeightOfAll(walls);
+  for (const ParallelWall& wall : walls) {
+    left -= wall.weight;
+    if (left <= 0.0) return wall.off;
+  }
+  return walls.back().off;
+}
+
+/// Of their median, as of normally distributed ones whose middle half is as wide.
+double SigmaOfMedian(const std::vector<ParallelWall>& walls) {
+  constexpr double kFewest = 3.0;  // walls of one weight
+  double squares = 0.0;
+  for (const ParallelWall& wall : walls) squares += wall.weight * wall.weight;
+  const double count = std::pow(WeightOfAll(walls), 2) / squares;
+  if (count < kFewest) return std::numeric_limits<double>::infinity();
+  const double sigma = (Quantile(walls, 0.75) - Quantile(walls, 0.25)) / 1.349;
+  return 1.2533 * sigma / std::sqrt(count);
+}
+
+}  // namespace
+
+std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options) {
+  return LineFitter(grid, options).Fit();
+}
+
+std::optional<WallDirection> DirectionOf(const std::vector<WallLine>& lines) {
+  const std::optional<double> peak = PeakOf(lines);
+  return peak ? DirectionNear(*peak, lines) : std::nullopt;
+}
+
+std::optional<WallDirection> DirectionNear(double angle, const std::vector<WallLine>& lines) {
+  const std::vector<ParallelWall> walls = ParallelWalls(lines, angle);
+  if (walls.empty()) return std::nullopt;
+  WallDirection direction{std::remainder(angle + Quantile(walls, 0.5), kQuarter),
+                          SigmaOfMedian(walls)};
+  if (direction.angle <= -kQuarter / 2.0) direction.angle += kQuarter;
+  return direction;
 }
 
 }  // namespace masked_mapper

@@ -112,16 +112,34 @@ TEST(WallLines, LeaveDoorsOpen) {
 
 TEST(WallLines, TellTheDirectionOfTheBuilding) {
   for (const double angle : {-0.7, -0.2, 0.0, 0.003, 0.5, 0.78}) {
-    const auto direction = WallDirection(FitWallLines(Drawn(Turned(kRooms, angle), 0.02, 40)));
+    const auto direction = DirectionOf(FitWallLines(Drawn(Turned(kRooms, angle), 0.02, 40)));
     ASSERT_TRUE(direction);
-    EXPECT_LT(std::abs(std::remainder(*direction - angle, M_PI / 2)), DegToRad(0.1)) << angle;
-    EXPECT_LE(std::abs(*direction), M_PI / 4 + 1e-9);
+    EXPECT_LT(std::abs(std::remainder(direction->angle - angle, M_PI / 2)), DegToRad(0.1)) << angle;
+    EXPECT_LE(std::abs(direction->angle), M_PI / 4 + 1e-9);
   }
+}
+
+TEST(WallLines, TellHowSureADirectionIs) {
+  const auto wall = [](double x, double length, double off_deg) {
+    const double angle = DegToRad(off_deg);
+    return WallLine{{x, 0.0}, {x + length * std::cos(angle), length * std::sin(angle)}};
+  };
+  std::vector<WallLine> walls;
+  for (int i = -5; i <= 5; ++i) walls.push_back(wall(i, 3.0, 0.1 * i));
+  for (int i = 0; i < 4; ++i) walls.push_back(wall(i, 2.9, 1.2));  // cupboards askew
+  const auto direction = DirectionNear(0.0, walls);
+  ASSERT_TRUE(direction);
+  EXPECT_NEAR(RadToDeg(direction->angle), 0.0, 0.25);
+  EXPECT_GT(RadToDeg(direction->sigma), 0.05);
+  EXPECT_LT(RadToDeg(direction->sigma), 0.4);
+  EXPECT_FALSE(DirectionNear(DegToRad(30.0), walls));
+  walls.resize(2);
+  EXPECT_TRUE(std::isinf(DirectionOf(walls)->sigma));
 }
 
 TEST(WallLines, OfNothingAreNone) {
   EXPECT_TRUE(FitWallLines(OccupancyGrid{}).empty());
-  EXPECT_FALSE(WallDirection({}));
+  EXPECT_FALSE(DirectionOf({}));
   OccupancyGrid speck;
   speck.width = speck.height = 1;
   speck.cells = {Cell::kOccupied};

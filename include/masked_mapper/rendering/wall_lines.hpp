@@ -29,8 +29,17 @@ struct WallLineOptions {
 /// round becomes several.
 std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options = {});
 
-/// The direction that most walls have or stand square to, rad, above -pi/4 and up to pi/4; nothing
-/// when there is no wall.
-std::optional<double> WallDirection(const std::vector<WallLine>& lines);
+/// The direction that most walls have or stand square to: the median of the walls about it, since
+/// furniture stands a little askew.
+struct WallDirection {
+  double angle = 0.0;  ///< rad, above -pi/4 and up to pi/4
+  double sigma = 0.0;  ///< rad, as walls differ about it; infinite: hardly more than two
+};
+
+/// Nothing when there is no wall.
+std::optional<WallDirection> DirectionOf(const std::vector<WallLine>& lines);
+
+/// The same of walls that have about this direction or stand square to it.
+std::optional<WallDirection> DirectionNear(double angle, const std::vector<WallLine>& lines);
 
 }  // namespace masked_mapper
