@@ -10,6 +10,7 @@
 
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
+#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "place_index.hpp"
 #include "visit_agreement.hpp"
@@ -275,6 +276,7 @@ std::vector<Doubt> FindDoubts(const BuildingMap& map) {
   std::vector<Doubt> doubts = VisitCheck(map).Find();
   for (const Doubt& doubt : DoubtsOfWays(map)) doubts.push_back(doubt);
   for (const Edge& edge : map.graph.edges()) {
+    if (IsHeadingTie(edge)) continue;
     if (const std::optional<Doubt> doubt = DoubtOf(map, edge)) doubts.push_back(*doubt);
   }
   for (const Doubt& doubt : DoubtsOfPieces(map)) doubts.push_back(doubt);

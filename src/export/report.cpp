@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "export/viewer_page.hpp"
+#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "output_file.hpp"
 #include "report_columns.hpp"
 #include "report_floors.hpp"
@@ -43,11 +44,12 @@ Json EdgesJson(const std::vector<Edge>& edges) {
   std::vector<std::int32_t> to;
   std::vector<std::uint8_t> kinds;
   for (const Edge& edge : edges) {
+    if (IsHeadingTie(edge)) continue;
     from.push_back(edge.from);
     to.push_back(edge.to);
     kinds.push_back(static_cast<std::uint8_t>(edge.kind));
   }
-  return {{"count", edges.size()},
+  return {{"count", from.size()},
           {"kinds", NamesOf(EdgeKind{})},
           {"from_i32", Base64(from)},
           {"to_i32", Base64(to)},

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "output_file.hpp"
@@ -91,7 +92,8 @@ Json FloorsJson(const std::vector<Summary::FloorEntry>& floors) {
                     {"elevation_m", Rounded(floor.elevation_m, 1000.0)},
                     {"elevation_measured", floor.elevation_measured},
                     {"nodes", floor.nodes},
-                    {"area_m2", Rounded(floor.area_m2, 100.0)}});
+                    {"area_m2", Rounded(floor.area_m2, 100.0)},
+                    {"parallel_parts", floor.parallel_parts}});
   }
   return json;
 }
@@ -214,6 +216,14 @@ Json SettingsJson(const std::vector<Setting>& settings) {
   return json;
 }
 
+/// Parts of a floor whose heading walls tell.
+std::uint64_t PartsTied(const PoseGraph& graph, FloorId floor) {
+  const std::vector<Edge>& edges = graph.edges();
+  return static_cast<std::uint64_t>(std::count_if(
+      edges.begin(), edges.end(),
+      [&](const Edge& edge) { return IsHeadingTie(edge) && graph.node(edge.to).floor == floor; }));
+}
+
 }  // namespace
 
 Summary Summarise(const BuildingMap& result, const RunDescription& run,
@@ -227,7 +237,8 @@ Summary Summarise(const BuildingMap& result, const RunDescription& run,
         std::count_if(result.graph.nodes().begin(), result.graph.nodes().end(),
                       [i](const Node& node) { return static_cast<std::size_t>(node.floor) == i; }));
     summary.floors.push_back({floors[i].label, floors[i].elevation, floors[i].elevation_measured,
-                              nodes, KnownArea(grids.at(i))});
+                              nodes, KnownArea(grids.at(i)),
+                              PartsTied(result.graph, static_cast<FloorId>(i))});
   }
   summary.transits = TransitsOf(result);
   summary.rejections = RejectionsOf(result.closures);

@@ -12,6 +12,7 @@
 #include "clouds_at_poses.hpp"
 #include "masked_mapper.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
+#include "masked_mapper/joining/parallel_walls.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"
@@ -140,6 +141,7 @@ class LogDrive {
     result.drives.back().log = path_;
     result.drives.back().motion_source = settled_.motion.source;
     TieVisits(mapper_->options().closures, settled_.floor_joins, result);
+    TieParallelWalls(options_.closures.optimizer.solver, options_.threads, result);
     result.kept_clouds = CloudsAtPoses(source_.KeptClouds(), result.trajectory);
     result.findings = survey_.findings;
     for (const SensorFinding& finding : survey_.findings) {

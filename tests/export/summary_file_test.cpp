@@ -47,8 +47,8 @@ TEST(SummaryFile, HasTheKeysOfTheContract) {
                    "peak_memory_mib", "options", "doubts", "warnings", "sensors"}));
   EXPECT_EQ(Keys(json["counts"]), (Names{"observations", "scans", "nodes", "scan_nodes",
                                          "odometry_nodes", "attempted", "matched", "validated"}));
-  EXPECT_EQ(Keys(json["floors"][0]),
-            (Names{"label", "elevation_m", "elevation_measured", "nodes", "area_m2"}));
+  EXPECT_EQ(Keys(json["floors"][0]), (Names{"label", "elevation_m", "elevation_measured", "nodes",
+                                            "area_m2", "parallel_parts"}));
   EXPECT_EQ(Keys(json["seconds"]),
             (Names{"read", "motion", "mask", "projection", "matching", "validation", "optimisation",
                    "rendering", "export", "total"}));

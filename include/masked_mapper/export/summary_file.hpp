@@ -43,7 +43,8 @@ struct Summary {
     double elevation_m = 0.0;
     bool elevation_measured = false;
     std::uint64_t nodes = 0;
-    double area_m2 = 0.0;  ///< known to be free or occupied
+    double area_m2 = 0.0;              ///< known to be free or occupied
+    std::uint64_t parallel_parts = 0;  ///< whose heading walls tell
   };
 
   struct TransitEntry {
