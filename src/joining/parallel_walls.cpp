@@ -142,6 +142,7 @@ std::vector<Edge> TiesOf(const PoseGraph& graph, const std::vector<Part>& parts)
 
 void TieParallelWalls(const OptimizerOptions& solver, int threads, BuildingMap& map) {
   if (map.graph.floors().size() < 2) return;
+  const StageTimer timer(map.seconds.optimisation);
   const std::vector<Edge> ties = TiesOf(map.graph, PartsOf(map, threads));
   if (ties.empty()) return;
   for (const Edge& tie : ties) map.graph.AddEdge(tie);
