@@ -10,7 +10,6 @@
 
 #include "masked_mapper/map/drives.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
-#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "place_index.hpp"
 #include "visit_agreement.hpp"
@@ -276,7 +275,7 @@ std::vector<Doubt> FindDoubts(const BuildingMap& map) {
   std::vector<Doubt> doubts = VisitCheck(map).Find();
   for (const Doubt& doubt : DoubtsOfWays(map)) doubts.push_back(doubt);
   for (const Edge& edge : map.graph.edges()) {
-    if (IsHeadingTie(edge)) continue;
+    if (edge.kind == EdgeKind::kHeading) continue;
     if (const std::optional<Doubt> doubt = DoubtOf(map, edge)) doubts.push_back(*doubt);
   }
   for (const Doubt& doubt : DoubtsOfPieces(map)) doubts.push_back(doubt);

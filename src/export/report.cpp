@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "export/viewer_page.hpp"
-#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "output_file.hpp"
 #include "report_columns.hpp"
 #include "report_floors.hpp"
@@ -44,7 +43,7 @@ Json EdgesJson(const std::vector<Edge>& edges) {
   std::vector<std::int32_t> to;
   std::vector<std::uint8_t> kinds;
   for (const Edge& edge : edges) {
-    if (IsHeadingTie(edge)) continue;
+    if (edge.kind == EdgeKind::kHeading) continue;
     from.push_back(edge.from);
     to.push_back(edge.to);
     kinds.push_back(static_cast<std::uint8_t>(edge.kind));

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "masked_mapper/text/enum_names.hpp"
 #include "masked_mapper/text/number_text.hpp"
 #include "output_file.hpp"
@@ -219,9 +218,10 @@ Json SettingsJson(const std::vector<Setting>& settings) {
 /// Parts of a floor whose heading walls tell.
 std::uint64_t PartsTied(const PoseGraph& graph, FloorId floor) {
   const std::vector<Edge>& edges = graph.edges();
-  return static_cast<std::uint64_t>(std::count_if(
-      edges.begin(), edges.end(),
-      [&](const Edge& edge) { return IsHeadingTie(edge) && graph.node(edge.to).floor == floor; }));
+  return static_cast<std::uint64_t>(
+      std::count_if(edges.begin(), edges.end(), [&](const Edge& edge) {
+        return edge.kind == EdgeKind::kHeading && graph.node(edge.to).floor == floor;
+      }));
 }
 
 }  // namespace

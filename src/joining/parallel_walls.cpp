@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/parallel_walls.hpp"
+#include "masked_mapper/joining/floor_joining.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 
 #include "masked_mapper/map/trajectory.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
-#include "masked_mapper/pose_graph/heading_tie.hpp"
 #include "masked_mapper/rendering/occupancy_grid.hpp"
 #include "masked_mapper/rendering/wall_lines.hpp"
 
@@ -28,6 +27,7 @@ constexpr double kBuiltDeg = 0.03;
 /// and others, err by a sixth of it. Walls are to be better than what the way is in truth.
 constexpr double kOfItsDoubt = 0.2;
 constexpr double kMostSigmas = 3.0;
+constexpr double kAnywhere = 1e5;  // m; no way is so unsure
 
 /// What the walls of a part say.
 struct Part {
@@ -111,6 +111,14 @@ std::vector<Part> PartsOf(const BuildingMap& map, int threads) {
     }
   }
   return parts;
+}
+
+/// `turn_rad`: from the heading of `from` to that of `to`.
+Edge HeadingTie(NodeId from, NodeId to, double turn_rad, double sigma_rad) {
+  Edge edge{from, to, {{0.0, 0.0, WrapAngle(turn_rad)}, {}}, EdgeKind::kHeading};
+  edge.T_from_to.covariance =
+      Eigen::Vector3d(kAnywhere, kAnywhere, sigma_rad).cwiseAbs2().asDiagonal();
+  return edge;
 }
 
 /// To the part that has most walls.

@@ -7,8 +7,6 @@
 #include <queue>
 #include <utility>
 
-#include "masked_mapper/pose_graph/heading_tie.hpp"
-
 namespace masked_mapper {
 
 OpenRevisits::OpenRevisits(const PoseGraph& graph, const OpenRevisitOptions& options)
@@ -71,7 +69,7 @@ std::vector<NodeId> OpenRevisits::WithinWalk(NodeId from) const {
     settled.push_back(node);
     for (const EdgeId id : graph_.EdgesOf(node)) {
       const Edge& edge = graph_.edges()[static_cast<std::size_t>(id)];
-      if (IsHeadingTie(edge)) continue;
+      if (edge.kind == EdgeKind::kHeading) continue;
       const NodeId next = edge.from == node ? edge.to : edge.from;
       const double there = walked + Distance(PoseOf(node), PoseOf(next));
       if (there <= options_.walk_m) queue.emplace(there, next);

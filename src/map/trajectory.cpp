@@ -19,7 +19,8 @@ bool HasNext(const PoseGraph& graph, std::size_t node) {
   const std::vector<EdgeId>& edges = graph.EdgesOf(static_cast<NodeId>(node));
   return std::any_of(edges.begin(), edges.end(), [&](EdgeId id) {
     const Edge& edge = graph.edges()[static_cast<std::size_t>(id)];
-    return edge.kind != EdgeKind::kClosure && edge.to == next;
+    return edge.to == next &&
+           (edge.kind == EdgeKind::kOdometry || edge.kind == EdgeKind::kFloorChange);
   });
 }
 

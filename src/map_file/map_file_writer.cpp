@@ -231,6 +231,15 @@ void WriteDrives(const std::vector<Drive>& drives, const Database& database) {
   }
 }
 
+std::int64_t OldestVersionFor(const BuildingMap& map) {
+  const std::vector<Edge>& edges = map.graph.edges();
+  if (std::any_of(edges.begin(), edges.end(),
+                  [](const Edge& edge) { return edge.kind == EdgeKind::kHeading; })) {
+    return kMapVersion;
+  }
+  return map.kept_clouds.empty() ? kMapVersionWithoutClouds : kMapVersionWithoutHeadings;
+}
+
 }  // namespace
 
 void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
@@ -243,9 +252,7 @@ void WriteMapFile(const MapOrigin& origin, const BuildingMap& result,
     database.Run("PRAGMA synchronous = OFF");
     database.Run("PRAGMA secure_delete = ON");  // what is free holds nothing
     Transaction transaction(database);
-    // What has no clouds is for older programs, too.
-    const std::int64_t version =
-        result.kept_clouds.empty() ? kMapVersionWithoutClouds : kMapVersion;
+    const std::int64_t version = OldestVersionFor(result);
     MakeTables(database, version);
     WriteOrigin(origin, result, database);
     WriteLog(result, database);

@@ -10,12 +10,14 @@
 namespace masked_mapper {
 
 constexpr std::int64_t kMapApplicationId = 0x4d6d6170;  // "Mmap"
-constexpr std::int64_t kMapVersion = 5;
+constexpr std::int64_t kMapVersion = 6;
 
-/// The newest version that has no table for clouds. Maps without any are written as it.
+/// The newest versions that know no edges of kind heading, and that have no table for clouds
+/// either. Maps without any are written as these, for older programs to read.
+constexpr std::int64_t kMapVersionWithoutHeadings = 5;
 constexpr std::int64_t kMapVersionWithoutClouds = 4;
 
-/// Makes the tables of one of these two versions in an empty database.
+/// Makes the tables of one of these three versions in an empty database.
 void MakeTables(Database& database, std::int64_t version);
 
 /// Says in table `content` how many rows each table has and what their checksum is.

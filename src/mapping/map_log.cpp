@@ -12,7 +12,6 @@
 #include "clouds_at_poses.hpp"
 #include "masked_mapper.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
-#include "masked_mapper/joining/parallel_walls.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/mapping/log_survey.hpp"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "masked_mapper/joining/parallel_walls.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "mapping/ring_drive.hpp"
-#include "masked_mapper/pose_graph/heading_tie.hpp"
+#include "masked_mapper/joining/floor_joining.hpp"
 
 namespace masked_mapper {
 namespace {
@@ -41,7 +39,8 @@ struct TwoStoreys {
 
   std::size_t Ties() const {
     return static_cast<std::size_t>(
-        std::count_if(map.graph.edges().begin(), map.graph.edges().end(), IsHeadingTie));
+        std::count_if(map.graph.edges().begin(), map.graph.edges().end(),
+                      [](const Edge& edge) { return edge.kind == EdgeKind::kHeading; }));
   }
 
  private:

@@ -87,6 +87,18 @@ TEST(MapFileReader, KeepsCloudsAndWithoutAnyIsOfTheVersionBefore) {
   EXPECT_TRUE(SameMap(map, ReadMapFile(folder / "with.mmap").result));
 }
 
+TEST(MapFileReader, KeepsEdgesThatTellATurnAlone) {
+  const TestFolder folder;
+  BuildingMap map = SampleMap();
+  Edge tie{0, 1, {{0.0, 0.0, 0.25}, Eigen::Matrix3d::Identity()}, EdgeKind::kHeading};
+  map.graph.AddEdge(tie);
+  WriteMapFile({}, map, folder / "a.mmap");
+  EXPECT_EQ(Database(folder / "a.mmap", OpenMode::kRead).Number("PRAGMA user_version"), 6);
+  const BuildingMap read = ReadMapFile(folder / "a.mmap").result;
+  EXPECT_TRUE(SameMap(map, read));
+  EXPECT_EQ(read.graph.edges().back().kind, EdgeKind::kHeading);
+}
+
 TEST(MapFileReader, AMapOfNothingIsAMap) {
   const TestFolder folder;
   WriteMapFile({}, {}, folder / "a.mmap");

@@ -36,9 +36,11 @@ struct Node {
   bool HasScan() const { return scan >= 0; }
 };
 
-enum class EdgeKind { kOdometry, kFloorChange, kClosure };
-constexpr std::array<const char*, 3> NamesOf(EdgeKind /*any*/) {
-  return {"odometry", "floor_change", "closure"};
+/// A heading edge tells how its nodes are turned to each other and, by a sigma of 100 km, nothing
+/// of where they lie: it is no way.
+enum class EdgeKind { kOdometry, kFloorChange, kClosure, kHeading };
+constexpr std::array<const char*, 4> NamesOf(EdgeKind /*any*/) {
+  return {"odometry", "floor_change", "closure", "heading"};
 }
 
 struct Edge {
