@@ -63,7 +63,11 @@ void WriteGraph(const PoseGraph& graph, const std::vector<NodeId>& nodes,
                 const std::vector<EdgeId>& edges, const std::filesystem::path& path) {
   std::string text;
   for (const NodeId id : nodes) text += VertexLine(id, graph.nodes()[static_cast<std::size_t>(id)]);
-  for (const EdgeId id : edges) text += EdgeLine(graph.edges()[static_cast<std::size_t>(id)]);
+  for (const EdgeId id : edges) {
+    const Edge& edge = graph.edge(id);
+    // Who reads the file takes every edge for a way, of its length.
+    if (edge.kind != EdgeKind::kHeading) text += EdgeLine(edge);
+  }
   WriteFile(path, text);
 }
 

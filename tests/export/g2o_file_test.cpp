@@ -53,6 +53,15 @@ G2oGraph ReadG2o(const std::filesystem::path& path) {
   return graph;
 }
 
+TEST(G2oFile, WhatTellsATurnAloneIsNoWay) {
+  BuildingMap map = SampleMap();
+  const std::size_t ways = map.graph.edges().size();
+  map.graph.AddEdge({0, 1, {{0.0, 0.0, 0.25}, Eigen::Matrix3d::Identity()}, EdgeKind::kHeading});
+  const TestFolder folder;
+  WriteG2o(map.graph, folder / "g.g2o");
+  EXPECT_EQ(ReadG2o(folder / "g.g2o").edges.size(), ways);
+}
+
 TEST(G2oFile, HoldsAllNodesAndEdges) {
   const BuildingMap map = SampleMap();
   const TestFolder folder;
