@@ -7,7 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "loop_closure/validator.hpp"
+#include "loop_closure/evidence_validator.hpp"
+#include "loop_closure/vote_validator.hpp"
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/pose_graph/dijkstra_projection.hpp"
 
@@ -96,13 +97,14 @@ void Candidates(benchmark::State& state) {
 BENCHMARK(Candidates)->Arg(1000)->Arg(3000)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
 // All matches of a drive over many rounds, judged as they come.
-void JudgeDrive(benchmark::State& state, const ValidatorOptions& options) {
+template <class Validator, class... Options>
+void JudgeDrive(benchmark::State& state, const Options&... options) {
   double judged = 0.0;
   double validated = 0.0;
   for (auto _ : state) {
     state.PauseTiming();
     GridDrive drive(static_cast<int>(state.range(0)));
-    LoopValidator validator(options);
+    Validator validator(options...);
     std::vector<Closure> closures;
     judged = validated = 0.0;
     for (NodeId a = 900; a < static_cast<NodeId>(state.range(0)); a += 10) {
@@ -123,11 +125,10 @@ void JudgeDrive(benchmark::State& state, const ValidatorOptions& options) {
   state.counters["hypotheses"] = judged;
   state.counters["validated"] = validated;
 }
-BENCHMARK_CAPTURE(JudgeDrive, default, ValidatorOptions())
-    ->Arg(5000)
-    ->Arg(10000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(JudgeDrive, paper_rule, PaperRule())->Arg(5000)->Unit(benchmark::kMillisecond);
+void JudgeByEvidence(benchmark::State& state) { JudgeDrive<EvidenceValidator>(state); }
+void JudgeByVotes(benchmark::State& state) { JudgeDrive<VoteValidator>(state, ValidatorOptions()); }
+BENCHMARK(JudgeByEvidence)->Arg(5000)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(JudgeByVotes)->Arg(5000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace masked_mapper

@@ -128,7 +128,6 @@ class DriveJoiner {
 
   /// Each piece is held against those before it, and those that it joins against the rest again.
   void Join(ProgressSink& progress) {
-    closures_.validator.places_needed = joins_.places_needed;
     PartFloors();
     std::size_t newer = 1;
     double done = 0.0;

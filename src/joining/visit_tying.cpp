@@ -18,10 +18,6 @@ namespace {
 
 constexpr double kScanEvery = 0.5;  // m of travel
 
-/// Where a visit lies is known by the ride already, to a few centimetres: votes of one place
-/// suffice.
-constexpr int kPlacesNeeded = 1;
-
 /// Of each node, counted from one floor to the next.
 std::vector<std::size_t> VisitsOf(const PoseGraph& graph) {
   std::vector<std::size_t> visits;
@@ -151,12 +147,11 @@ std::size_t SearchVisit(const BuildingMap& map, const std::vector<std::size_t>& 
 
 }  // namespace
 
-void TieVisits(LoopClosureOptions options, const FloorJoinOptions& joins, BuildingMap& map) {
+void TieVisits(const LoopClosureOptions& options, const FloorJoinOptions& joins, BuildingMap& map) {
   const std::vector<std::size_t> visits = VisitsOf(map.graph);
   constexpr std::size_t kFewest = 3;  // one floor, another, and the first again
   if (visits.empty() || visits.back() + 1 < kFewest) return;
   const std::vector<bool> is_tied = TiedToOlderVisits(map, visits);
-  options.validator.places_needed = kPlacesNeeded;
   const LookupTableOptions& table = options.matcher.table;
   LoopCloser closer(options, map, [&](NodeId node) {
     const SurroundingsOptions around{options.submaps.half_length_m, kScanEvery, LaidOutBy::kMotion};

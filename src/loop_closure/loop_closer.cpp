@@ -6,16 +6,30 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 
+#include "evidence_validator.hpp"
+#include "loop_evidence.hpp"
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
 #include "masked_mapper/loop_closure/closure_matcher.hpp"
 #include "masked_mapper/map/building_map.hpp"
 #include "masked_mapper/optimization/pose_graph_optimizer.hpp"
 #include "open_revisits.hpp"
 #include "submaps.hpp"
-#include "validator.hpp"
+#include "vote_validator.hpp"
 
 namespace masked_mapper {
+
+namespace {
+
+using Validator = std::variant<EvidenceValidator, VoteValidator>;
+
+Validator ValidatorFor(const ValidatorOptions& options) {
+  if (options.rule == ValidatorRule::kPaper) return VoteValidator(options);
+  return EvidenceValidator();
+}
+
+}  // namespace
 
 class LoopCloser::Impl {
  public:
@@ -26,7 +40,7 @@ class LoopCloser::Impl {
 
   template <class Archive>
   void Serialize(Archive& archive) {
-    validator_.Serialize(archive, map_.closures);
+    std::visit([&](auto& validator) { validator.Serialize(archive, map_.closures); }, validator_);
     archive(optimizer_);
   }
 
@@ -34,6 +48,7 @@ class LoopCloser::Impl {
   using NodePairs = std::set<std::pair<NodeId, NodeId>>;  ///< older, newer
 
   std::vector<ClosureId> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  std::size_t Validate(std::vector<ClosureId> matches);
   void Solve();
   void CloseLate();
   void CloseOpenVotes();
@@ -42,10 +57,9 @@ class LoopCloser::Impl {
   std::size_t CloseOpenRevisits(NodePairs& tried);
   bool CloseRevisit(NodeId newer, NodeId older);
   bool CanBeOne(const Closure& closure) const;
-  bool AgreesWith(const UncertainPose2& T_older_newer, const Closure& closure) const;
   bool FitsTheMap(const Closure& closure) const;
   Pose2 MapBetween(NodeId from, NodeId to) const;
-  std::optional<UncertainPose2> SureWay(NodeId from, NodeId to) const;
+  std::optional<UncertainPose2> WayBetween(NodeId from, NodeId to) const;
   void EnterLate(ClosureId id);
   void Audit();
 
@@ -54,7 +68,7 @@ class LoopCloser::Impl {
   ReferencePoints reference_;
   ClosureMatcher matcher_;
   ClosureMatcher late_matcher_;  ///< its references are other points of the same nodes
-  LoopValidator validator_;
+  Validator validator_;
   PoseGraphOptimizer optimizer_;
   NodePairs forbidden_;  ///< by hand
 };
@@ -66,7 +80,7 @@ LoopCloser::Impl::Impl(const LoopClosureOptions& options, BuildingMap& map,
       reference_(std::move(reference)),
       matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
       late_matcher_(options.matcher, options.submaps, options.ambiguity, options.refine, map),
-      validator_(Settled(options.validator, options.laid_out_by_scans)),
+      validator_(ValidatorFor(options.validator)),
       optimizer_(options.optimizer) {
   for (const Closure& closure : map.closures) {
     if (closure.reason == ClosureReason::kForbiddenByHand) {
@@ -76,17 +90,26 @@ LoopCloser::Impl::Impl(const LoopClosureOptions& options, BuildingMap& map,
 }
 
 std::size_t LoopCloser::Impl::Close(NodeId new_node, const std::vector<Candidate>& candidates) {
-  const std::vector<ClosureId> matches = MatchScans(new_node, candidates);
-  std::vector<ClosureId> validated;
-  {
-    const StageTimer timer(map_.seconds.validation);
-    validated = validator_.Judge(map_.graph, matches, map_.closures);
-  }
-  if (validated.empty()) return 0;
-  for (const ClosureId id : validated) AddClosureEdge(map_.closures, id, map_.graph);
+  const std::size_t validated = Validate(MatchScans(new_node, candidates));
+  if (validated == 0) return 0;
   const StageTimer timer(map_.seconds.optimisation);
   optimizer_.Update(map_.graph);
-  return validated.size();
+  return validated;
+}
+
+// What entered is a way that others may have been waiting for.
+std::size_t LoopCloser::Impl::Validate(std::vector<ClosureId> matches) {
+  const StageTimer timer(map_.seconds.validation);
+  std::size_t count = 0;
+  while (true) {
+    const std::vector<ClosureId> validated = std::visit(
+        [&](auto& validator) { return validator.Judge(map_.graph, matches, map_.closures); },
+        validator_);
+    if (validated.empty()) return count;
+    for (const ClosureId id : validated) AddClosureEdge(map_.closures, id, map_.graph);
+    count += validated.size();
+    matches.clear();
+  }
 }
 
 std::vector<ClosureId> LoopCloser::Impl::MatchScans(NodeId new_node,
@@ -191,22 +214,14 @@ Pose2 LoopCloser::Impl::MapBetween(NodeId from, NodeId to) const {
   return Between(map_.graph.node(from).T_world_robot, map_.graph.node(to).T_world_robot);
 }
 
-// From the map, and as sure as the surest way through the graph; none where that cannot vouch for a
-// closure.
-std::optional<UncertainPose2> LoopCloser::Impl::SureWay(NodeId from, NodeId to) const {
-  for (const ProjectedNode& projected :
-       DijkstraProjection(map_.graph, from, {options_.validator.sure_loop_trace})) {
+// From the map, and as sure as the surest way through the graph.
+std::optional<UncertainPose2> LoopCloser::Impl::WayBetween(NodeId from, NodeId to) const {
+  constexpr double kMostTrace = 2.0;  // the search ends there: less sure, it vouches for nothing
+  for (const ProjectedNode& projected : DijkstraProjection(map_.graph, from, {kMostTrace})) {
     if (projected.node != to) continue;
     return UncertainPose2{MapBetween(from, to), projected.T_source_node.covariance};
   }
   return std::nullopt;
-}
-
-// As a loop agrees in the validator.
-bool LoopCloser::Impl::AgreesWith(const UncertainPose2& T_older_newer,
-                                  const Closure& closure) const {
-  return MahalanobisFromIdentity(Inverse(T_older_newer) * closure.T_older_newer) <
-         options_.validator.max_loop_error;
 }
 
 void LoopCloser::Impl::EnterLate(ClosureId id) {
@@ -245,24 +260,30 @@ std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
 }
 
 bool LoopCloser::Impl::CloseRevisit(NodeId newer, NodeId older) {
-  const std::optional<UncertainPose2> sure_way = SureWay(older, newer);
-  if (!sure_way || forbidden_.count({older, newer}) != 0) return false;
+  const std::optional<UncertainPose2> way = WayBetween(older, newer);
+  if (!way || forbidden_.count({older, newer}) != 0) return false;
+  // By scans, what the map says already may enter: it is as sure as that.
+  if (options_.laid_out_by_scans &&
+      ChanceToBeWrong({{}, way->covariance}) > std::exp(-kEnoughNats)) {
+    return false;
+  }
   const ScanPoints::ConstPtr points_in_newer = late_matcher_.submaps().PointsAt(newer);
   if (!points_in_newer) return false;
   const double mahalanobis =
-      MahalanobisDistance(sure_way->mean.Translation(), sure_way->covariance.topLeftCorner<2, 2>(),
+      MahalanobisDistance(way->mean.Translation(), way->covariance.topLeftCorner<2, 2>(),
                           options_.candidates.match_range_m);
   const GuessIs guess =
       options_.laid_out_by_scans ? GuessIs::kAsGoodAsAMatch : GuessIs::kASureWindow;
   // The robot may have come the other way: its scan then shows what lies behind that of the older.
   const ClosureOffer offer{
-      older,          newer, *sure_way, mahalanobis, late_matcher_.submaps().PointsAround(older),
+      older,          newer, *way, mahalanobis, late_matcher_.submaps().PointsAround(older),
       points_in_newer};
   Closure closure = late_matcher_.Match({offer}, guess).front();
   const bool believed = closure.reason == ClosureReason::kTooFewVotes;
   const bool refined = believed || closure.reason == ClosureReason::kAlikeAlongALine;
-  const bool fits =
-      options_.laid_out_by_scans ? FitsTheMap(closure) : AgreesWith(*sure_way, closure);
+  const bool fits = options_.laid_out_by_scans
+                        ? FitsTheMap(closure)
+                        : LoopEvidence(Inverse(*way) * closure.T_older_newer) >= kEnoughNats;
   if (refined && !fits) closure.reason = ClosureReason::kDisagreesWithTheMap;
   map_.closures.push_back(std::move(closure));
   if (!believed || !fits) return false;

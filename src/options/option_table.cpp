@@ -181,9 +181,9 @@ std::vector<OptionEntry> OptionTable(Options& o) {
        "deg; half the search window at most"},
 
       {"validator.rule", ChoiceOf(o.mapping.closures.validator.rule), 0, 0,
-       "evidence: votes for what they are worth; paper: votes alone"},
+       "evidence: odds against chance; paper: votes of loops"},
       {"validator.votes_needed", &o.mapping.closures.validator.votes_needed, 1, 1000,
-       "loops that must agree with a closure; paper: 6"},
+       "loops that must agree, by the paper's rule; paper: 6"},
 
       {"grid.resolution_m", &o.grid.resolution_m, 0.01, 1, "m; side of a cell of the grid"},
       {"grid.max_usable_range_m", &o.grid.max_usable_range_m, 0.5, kFar,

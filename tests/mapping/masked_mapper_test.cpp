@@ -161,7 +161,6 @@ TEST(MaskedMapper, WhatFitsTheOptimisedMapEntersLateAndIsRight) {
   for (const double most_m : {0.2, 0.0}) {
     MappingOptions options;
     options.motion.source = MotionSource::kFused;
-    options.closures.validator.sure_loop_trace = 0.0;  // leaves more to the end
     options.closures.polish.most_m = most_m;
     const FloorTimeline floors;
     MaskedMapper mapper("openings", options, floors);

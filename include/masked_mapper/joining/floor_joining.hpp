@@ -40,7 +40,7 @@ FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
 /// nodes. A visit that even this ties nowhere is looked for on the floor as the older ones saw it.
 /// Closures enter by the validator's votes, as all do. The map is solved and its path bent anew if
 /// there are any. `map` is that of one drive, finished, with `drives` set.
-void TieVisits(LoopClosureOptions options, const FloorJoinOptions& joins, BuildingMap& map);
+void TieVisits(const LoopClosureOptions& options, const FloorJoinOptions& joins, BuildingMap& map);
 
 /// Walls of one building have few directions, on all its storeys. Where a long way bends a floor by
 /// a tenth of a degree, or a ride turns one, its far end lies decimetres off, and so does every

@@ -20,11 +20,10 @@ struct DriveJoinOptions {
   double min_share = 0.4;        ///< of the places that lie within the older map
   double min_spread_m = 8.0;     ///< between the two places farthest apart
   double clear_lead = 0.05;      ///< of score, by which a place speaks against another way to join
-  int places_needed = 2;   ///< stands for the validator's: where the drive lies is known already
-  double reach_m = 4.0;    ///< from a node to those that it is offered to
-  double sigma_m = 0.5;    ///< of where the places put it
-  double sigma_deg = 2.0;  ///< and of the heading
-  GridOptions seen;        ///< how free space is told, that a place may not stand against
+  double reach_m = 4.0;          ///< from a node to those that it is offered to
+  double sigma_m = 0.5;          ///< of where the places put it
+  double sigma_deg = 2.0;        ///< and of the heading
+  GridOptions seen;              ///< how free space is told, that a place may not stand against
 };
 
 /// The newer part lies already where motion puts it, as far off as this.

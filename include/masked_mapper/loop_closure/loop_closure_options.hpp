@@ -37,8 +37,8 @@ struct AmbiguityOptions {
 };
 
 enum class ValidatorRule {
-  kEvidence,  ///< votes, each for what it is worth, and what the best validated way says
-  kPaper,     ///< votes alone, as in the paper
+  kEvidence,  ///< what speaks for a match, against what chance would give
+  kPaper,     ///< votes, as in the paper
 };
 constexpr std::array<const char*, 2> NamesOf(ValidatorRule /*any*/) {
   return {"evidence", "paper"};
@@ -46,33 +46,11 @@ constexpr std::array<const char*, 2> NamesOf(ValidatorRule /*any*/) {
 
 struct ValidatorOptions {
   ValidatorRule rule = ValidatorRule::kEvidence;
-  int votes_needed = 6;  ///< paper: 6
-  /// Mahalanobis distance from the identity below which a loop agrees; paper: 2
-  double max_loop_error = 2.0;
-
-  /// Trace (m^2 and rad^2, Eq. 2) beyond which a loop would agree with whatever the matcher finds
-  /// and is no evidence. The search ends there, which also keeps its cost apart from the size of
-  /// the map.
-  double max_loop_trace = 2.0;
-  /// Trace up to which a loop is so sure that agreeing with it nearly means being right: each is a
-  /// vote. A looser loop votes once for every set of unvalidated closures on it, and
-  /// `max_loose_votes` times at most.
-  double tight_loop_trace = 0.25;
-  int max_loose_votes = 2;
-  /// Trace up to which agreeing with a loop of validated closures and odometry alone is all the
-  /// votes that are needed: the match says what the map says already, and can hardly move it. A
-  /// corner passed twice offers no six loops.
-  double sure_loop_trace = 0.1;
-  /// Places, farther apart than `place_radius_m`, whose closures have to agree before closures
-  /// enter that no sure way to the rest of the map confirms; more the more they surprise
-  /// (PlacesNeeded()).
-  int places_needed = 3;
-  double place_radius_m = 2.5;
-  /// Mahalanobis distance of the best validated way beyond which a closure stays out.
-  double max_contradiction = 8.0;
-
-  int max_loops = 40;       ///< loops looked at for one hypothesis; ours
-  int hopeless_loops = 12;  ///< after so many without one that agrees it is left; ours
+  // Of the paper's rule.
+  int votes_needed = 6;         ///< paper: 6
+  double max_loop_error = 2.0;  ///< sigmas from the identity below which a loop agrees; paper: 2
+  int max_loops = 40;           ///< loops looked at for one hypothesis; ours
+  int hopeless_loops = 12;      ///< after so many without one that agrees it is left; ours
 };
 
 struct OpenRevisitOptions {
