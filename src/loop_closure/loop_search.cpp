@@ -70,8 +70,7 @@ LoopSearch::Reached& LoopSearch::At(NodeId node) {
 
 std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
                                                const std::vector<Closure>& closures, NodeId from,
-                                               NodeId to, double max_trace,
-                                               const RemovedSteps& removed) {
+                                               NodeId to, const RemovedSteps& removed) {
   reached_.resize(graph.nodes().size());
   closures_of_.resize(graph.nodes().size());
   ++search_;
@@ -109,7 +108,6 @@ std::optional<LeastErrorPath> LoopSearch::Find(const PoseGraph& graph,
       Reached& there = At(next);
       if (there.settled) return;
       const double trace_there = forward ? trace.With(T) : trace.WithInverse(T);
-      if (trace_there > max_trace) return;
       ++there.ways;
       if (there.parent >= 0 &&
           std::tie(there.unvalidated, there.trace) <= std::tie(unvalidated, trace_there)) {

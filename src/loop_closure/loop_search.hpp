@@ -42,7 +42,7 @@ class RemovedSteps {
 /// Dijkstra over (number of unvalidated closures, trace of the covariance), in this order, so that
 /// a validated way is always taken before an unvalidated one; this is our reading of "validated
 /// always before unvalidated". As in the projection, a node is settled by the first composition to
-/// reach it. Costs what the nodes within `max_trace` cost, whatever the size of the map.
+/// reach it.
 class LoopSearch {
  public:
   /// Makes a closure an edge of the search: one more unvalidated one, or a validated one that the
@@ -51,10 +51,9 @@ class LoopSearch {
   /// Takes it out for good, once the graph holds it.
   void Drop(ClosureId id, const Closure& closure);
 
-  /// Empty when every way is removed, or has a trace (m^2 and rad^2, Eq. 2) above `max_trace`.
+  /// Empty when every way is removed.
   std::optional<LeastErrorPath> Find(const PoseGraph& graph, const std::vector<Closure>& closures,
-                                     NodeId from, NodeId to, double max_trace,
-                                     const RemovedSteps& removed);
+                                     NodeId from, NodeId to, const RemovedSteps& removed);
 
   /// The state, for a checkpoint (sensor/state_archive.hpp); `closures` as given to Find().
   template <class Archive>

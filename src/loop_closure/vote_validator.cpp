@@ -2,7 +2,6 @@
 #include "vote_validator.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
@@ -34,14 +33,13 @@ std::vector<ClosureId> VoteValidator::Judge(const PoseGraph& graph,
 }
 
 void VoteValidator::JudgeOne(const PoseGraph& graph, ClosureId id, std::vector<Closure>& closures) {
-  constexpr double kHoweverUnsure = std::numeric_limits<double>::infinity();
   const Closure& judged = closures[static_cast<std::size_t>(id)];
   RemovedSteps removed;
   for (int loops = 0; loops < options_.max_loops; ++loops) {
     if (judged.state == ClosureState::kValidated) return;
     if (judged.votes == 0 && loops >= options_.hopeless_loops) return;
     const std::optional<LeastErrorPath> path =
-        search_.Find(graph, closures, judged.newer, judged.older, kHoweverUnsure, removed);
+        search_.Find(graph, closures, judged.newer, judged.older, removed);
     if (!path) return;
     removed.Add(MostRedundantStep(*path));
     const UncertainPose2 loop = path->T_from_to * judged.T_older_newer;

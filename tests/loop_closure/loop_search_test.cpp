@@ -13,8 +13,6 @@
 namespace masked_mapper {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
 struct Scene {
   PoseGraph graph;
   std::vector<Closure> closures;
@@ -99,8 +97,7 @@ TEST(LoopSearch, FindsTheLeastOfAllPathsWhereTheTraceIsAdditive) {
       on_path[static_cast<std::size_t>(node)] = false;
     };
     walk(0, {0, 0.0});
-    const auto path =
-        scene.search.Find(scene.graph, scene.closures, 0, 5, kNoLimit, RemovedSteps());
+    const auto path = scene.search.Find(scene.graph, scene.closures, 0, 5, RemovedSteps());
     ASSERT_EQ(path.has_value(), least.has_value());
     if (!path) continue;
     ++found;
@@ -114,8 +111,7 @@ TEST(LoopSearch, ThePathIsWhatItsStepsCompose) {
   std::mt19937 random(2);
   for (int trial = 0; trial < 100; ++trial) {
     Scene scene = RandomScene(random, 8, 7, 6, 0.3);
-    const auto path =
-        scene.search.Find(scene.graph, scene.closures, 0, 7, kNoLimit, RemovedSteps());
+    const auto path = scene.search.Find(scene.graph, scene.closures, 0, 7, RemovedSteps());
     if (!path) continue;
     UncertainPose2 T;
     NodeId at = 0;
@@ -159,22 +155,22 @@ TEST(LoopSearch, ALongValidatedWayGoesBeforeAShortUnvalidatedOne) {
   scene.closures.push_back(closure);
   scene.search.Add(0, scene.closures[0]);
   RemovedSteps removed;
-  auto path = scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed);
+  auto path = scene.search.Find(scene.graph, scene.closures, 0, 2, removed);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->unvalidated, 0);
-  // Above the limit, or taken away, it leaves the way to the other.
-  path = scene.search.Find(scene.graph, scene.closures, 0, 2, 1.0, removed);
-  ASSERT_TRUE(path);
-  EXPECT_EQ(path->unvalidated, 1);
+  // Taken away, it leaves the way to the other.
   removed.Add({0, -1, 1, 1});
-  path = scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed);
+  path = scene.search.Find(scene.graph, scene.closures, 0, 2, removed);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->unvalidated, 1);
   EXPECT_NEAR(path->T_from_to.mean.x, 2.0, 1e-12) << "m";
   removed.Add(path->steps[0]);
-  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, kNoLimit, removed));
+  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, removed));
+  RemovedSteps odometry;
+  odometry.Add({0, -1, 1, 1});
+  EXPECT_TRUE(scene.search.Find(scene.graph, scene.closures, 0, 2, odometry));
   scene.search.Drop(0, scene.closures[0]);
-  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, 1.0, RemovedSteps()));
+  EXPECT_FALSE(scene.search.Find(scene.graph, scene.closures, 0, 2, odometry));
 }
 
 TEST(LoopSearch, TheMostRedundantStepIsWhereMostWaysMeet) {
@@ -193,7 +189,7 @@ TEST(LoopSearch, TheMostRedundantStepIsWhereMostWaysMeet) {
   add(0, 3, 0.12);
   add(3, 4, 0.50);
   add(4, 5, 0.10);
-  const auto path = scene.search.Find(scene.graph, scene.closures, 0, 5, kNoLimit, RemovedSteps());
+  const auto path = scene.search.Find(scene.graph, scene.closures, 0, 5, RemovedSteps());
   ASSERT_TRUE(path);
   ASSERT_EQ(path->steps.size(), 3u);
   EXPECT_EQ(path->steps[0].ways, 1);
