@@ -149,4 +149,17 @@ inline Revisit TwicePast(Drive& drive, int nodes, double detour) {
   return revisit;
 }
 
+/// A corridor passed again, every match right.
+template <class Validator>
+Count CountOfRevisit(unsigned seed, Judging<Validator>& validator) {
+  Drive drive(0.02, 0.002, seed);
+  const Revisit revisit = TwicePast(drive, 10, 40.0);
+  for (std::size_t i = 0; i < revisit.second.size(); ++i) {
+    std::vector<Closure> matches{drive.Match(revisit.second[i], revisit.first[i])};
+    if (i > 0) matches.push_back(drive.Match(revisit.second[i], revisit.first[i - 1]));
+    drive.Judge(validator, matches);
+  }
+  return CountOf(drive, validator);
+}
+
 }  // namespace masked_mapper
