@@ -73,14 +73,14 @@ const Stop* StopOn(const Crossing& crossing, FloorId floor) {
 }
 
 bool IsNear(const Stop& a, const Stop& b, double reach_m) {
-  return a.floor == b.floor && Distance(a.T_world_robot, b.T_world_robot) <= reach_m;
+  return Distance(a.T_world_robot, b.T_world_robot) <= reach_m;
 }
 
-/// Whether two cabs stood at one place of a floor.
+/// Whether two cabs stood at one place of the plan, on whatever floors: a shaft has one cab.
 bool IsSameCab(const Crossing& a, const Crossing& b) {
   return std::any_of(a.stops.begin(), a.stops.end(), [&](const Stop& stop) {
-    const Stop* const other = StopOn(b, stop.floor);
-    return other != nullptr && IsNear(stop, *other, kSameCab);
+    return std::any_of(b.stops.begin(), b.stops.end(),
+                       [&](const Stop& other) { return IsNear(stop, other, kSameCab); });
   });
 }
 

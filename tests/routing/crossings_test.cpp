@@ -25,6 +25,27 @@ TEST(Crossings, ACabIsOneWhereItStoodAtOnePlace) {
   EXPECT_EQ(crossings[1].stops.size(), 2U);
 }
 
+TEST(Crossings, AShaftHasOneCabOnAllFloors) {
+  BuildingMap map;
+  for (const char* label : {"0", "1", "2", "3"}) {
+    map.graph.AddFloor({label, 3.0 * label[0], 0.1, true, false});
+  }
+  map.graph.AddNode({});
+  map.drives.push_back({});
+  const auto ride = [&](FloorId from, FloorId to, double x) {
+    Drive(map, from, x, 1.0);
+    Drive(map, from, x, 1.0, true);
+    Drive(map, to, x, 1.0);
+  };
+  ride(0, 1, 1.0);
+  ride(1, 2, 20.0);
+  ride(2, 3, 1.3);  // no floor was come to by the first cab and left by it
+  const std::vector<Crossing> crossings = CrossingsOf(map);
+  ASSERT_EQ(crossings.size(), 2U);
+  EXPECT_EQ(crossings[0].stops.size(), 4U);
+  EXPECT_EQ(crossings[1].stops.size(), 2U);
+}
+
 TEST(Crossings, ARideMayShowThatTwoCabsAreOne) {
   BuildingMap map;
   for (const char* label : {"0", "1", "2", "3"}) {
@@ -32,15 +53,15 @@ TEST(Crossings, ARideMayShowThatTwoCabsAreOne) {
   }
   map.graph.AddNode({});
   map.drives.push_back({});
-  const auto ride = [&](FloorId from, FloorId to) {
-    Drive(map, from, 1.0, 1.0);
-    Drive(map, from, 1.0, 1.0, true);
-    Drive(map, to, 1.0, 1.0);
+  const auto ride = [&](FloorId from, FloorId to, double x) {
+    Drive(map, from, x, 1.0);
+    Drive(map, from, x, 1.0, true);
+    Drive(map, to, x, 1.0);
     Drive(map, to, 20.0, 1.0);
   };
-  ride(0, 1);
-  ride(2, 3);
-  ride(1, 2);
+  ride(0, 1, 1.0);
+  ride(2, 3, 2.6);  // at the other side of the cab
+  ride(1, 2, 1.8);
   // From 20 m off to the next ride's start no floor changes in transit but by the wheels: walked.
   const std::vector<Crossing> crossings = CrossingsOf(map);
   const auto cabs = std::count_if(crossings.begin(), crossings.end(), [](const Crossing& crossing) {

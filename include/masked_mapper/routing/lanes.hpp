@@ -35,8 +35,8 @@ struct Crossing {
   std::vector<Eigen::Vector2d> way;  ///< of stairs: in world, from the first stop to the second
 };
 
-/// In order of first use. Rides whose cabs stood at one place of a floor are rides of one cab, and
-/// any two of its floors are one ride apart.
+/// In order of first use. Rides whose cabs stood at one place of the plan, on whatever floors, are
+/// rides of one cab, and any two of its floors are one ride apart.
 std::vector<Crossing> CrossingsOf(const BuildingMap& map);
 
 /// For whom there has to be room.
