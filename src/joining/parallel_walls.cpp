@@ -46,6 +46,7 @@ std::vector<std::vector<WallLine>> WallsOfFloors(const BuildingMap& map, int thr
   }
   GridOptions grid;
   grid.threads = threads;
+  grid.glass = false;  // a pane is hit seldom: directions are told by walls
   std::vector<std::vector<WallLine>> walls;
   for (std::size_t i = 0; i < map.graph.floors().size(); ++i) {
     walls.push_back(FitWallLines(RenderGrid(scans, static_cast<FloorId>(i), grid)));

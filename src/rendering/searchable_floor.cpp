@@ -41,7 +41,9 @@ SearchableFloor::SearchableFloor(const ScanPoints& points_in_world,
     : floor_(floor),
       coarse_(points_in_world, options.coarse),
       fine_(points_in_world, options.fine) {
-  if (HasFloor()) seen_ = RenderGrid(scans, floor, options.seen);
+  GridOptions seen = options.seen;
+  seen.glass = false;  // what most beams of a scan pass speaks for no place
+  if (HasFloor()) seen_ = RenderGrid(scans, floor, seen);
 }
 
 bool SearchableFloor::IsSeen(const Eigen::Vector2d& point_in_world) const {

@@ -34,6 +34,7 @@ struct GridOptions {
   /// Where a newer drive saw enough of a cell to tell a wall, what older ones saw of it is
   /// forgotten: walls that were taken away, doors that are open now. Scans are in order of drives.
   bool forget = false;
+  bool glass = true;  ///< walls that stop only beams that meet them squarely are walls
   int threads = 1;
 };
 
