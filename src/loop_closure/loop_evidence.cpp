@@ -23,8 +23,8 @@ constexpr double kSearchedPerWrong = 250.0;
 // the right one is, but for this share, which may be turned anyhow.
 constexpr double kShareTurned = 0.1;
 
-// Of matches at the right place, these lie beside it by more than they say, by up to 0.5 m and 5
-// degrees: one in 100 in simulated buildings, where doors and pillars stand in rows.
+// Of matches at the right place, these lie beside it by more than they say, along a wall by up to
+// 0.5 m: one in 100 in simulated buildings, where doors and pillars stand in rows.
 constexpr double kShareThatSlips = 0.02;
 
 // Sigmas are as sure as if each were learnt from so many tries: errors have the tails of Student's
@@ -70,10 +70,12 @@ double LogChanceToBeWrong(const UncertainPose2& known) {
 }  // namespace
 
 double LoopEvidence(const UncertainPose2& loop) {
+  // Along the line on which it would have slipped, evenly; across it and in heading as right ones.
   UncertainPose2 slipped = loop;
-  const double wrong_rad = DegToRad(kWrongDeg);
-  slipped.covariance.diagonal() +=
-      Eigen::Vector3d(kWrongM, kWrongM, wrong_rad).cwiseAbs2() / 3.0;  // as if spread evenly
+  const Eigen::Vector2d off = loop.mean.Translation();
+  const Eigen::Vector2d along =
+      off.norm() > 0.0 ? Eigen::Vector2d(off.normalized() * kWrongM) : Eigen::Vector2d::Zero();
+  slipped.covariance.topLeftCorner<2, 2>() += along * along.transpose() / 3.0;
   const double turned = LogSum(std::log(1.0 - kShareTurned) + LogDensityOfTurn(loop),
                                std::log(kShareTurned / (2.0 * kPi)));
   const double elsewhere = LogChanceToBeWrong(loop) + turned - std::log(kSearchedPerWrong);
