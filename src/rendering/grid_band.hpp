@@ -103,7 +103,7 @@ class Band {
       const std::uint32_t hits = hits_[index].hits();
       if (hits < options.occupied_ratio * visits || hits == 0) {
         cell = Cell::kFree;
-        const std::uint8_t axes = hits == 0 ? 0 : GlassAxesOf(index, options);
+        const std::uint8_t axes = options.glass && hits != 0 ? GlassAxesOf(index, options) : 0;
         if (axes != 0) glass->push_back({first + index, axes, PointOf(index, *grid)});
       } else if (static_cast<std::int64_t>(hits) >= options.min_hits) {
         cell = Cell::kOccupied;

@@ -129,7 +129,7 @@ OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor
   for (const auto& part : walls) grid.walls.insert(grid.walls.end(), part.begin(), part.end());
   std::vector<GlassCell> all_glass;
   for (const auto& part : glass) all_glass.insert(all_glass.end(), part.begin(), part.end());
-  if (options.glass) KeepGlass(all_glass, &grid);
+  KeepGlass(all_glass, &grid);
   return grid;
 }
 
