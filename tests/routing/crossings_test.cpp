@@ -8,6 +8,16 @@
 namespace masked_mapper {
 namespace {
 
+BuildingMap MapOfFourFloors() {
+  BuildingMap map;
+  for (const char* label : {"0", "1", "2", "3"}) {
+    map.graph.AddFloor({label, 3.0 * label[0], 0.1, true, false});
+  }
+  map.graph.AddNode({});
+  map.drives.push_back({});
+  return map;
+}
+
 TEST(Crossings, ACabIsOneWhereItStoodAtOnePlace) {
   BuildingMap map = TwoFloors();
   Drive(map, 1, 3.4, 0.7);
@@ -26,12 +36,7 @@ TEST(Crossings, ACabIsOneWhereItStoodAtOnePlace) {
 }
 
 TEST(Crossings, AShaftHasOneCabOnAllFloors) {
-  BuildingMap map;
-  for (const char* label : {"0", "1", "2", "3"}) {
-    map.graph.AddFloor({label, 3.0 * label[0], 0.1, true, false});
-  }
-  map.graph.AddNode({});
-  map.drives.push_back({});
+  BuildingMap map = MapOfFourFloors();
   const auto ride = [&](FloorId from, FloorId to, double x) {
     Drive(map, from, x, 1.0);
     Drive(map, from, x, 1.0, true);
@@ -47,12 +52,7 @@ TEST(Crossings, AShaftHasOneCabOnAllFloors) {
 }
 
 TEST(Crossings, ARideMayShowThatTwoCabsAreOne) {
-  BuildingMap map;
-  for (const char* label : {"0", "1", "2", "3"}) {
-    map.graph.AddFloor({label, 3.0 * label[0], 0.1, true, false});
-  }
-  map.graph.AddNode({});
-  map.drives.push_back({});
+  BuildingMap map = MapOfFourFloors();
   const auto ride = [&](FloorId from, FloorId to, double x) {
     Drive(map, from, x, 1.0);
     Drive(map, from, x, 1.0, true);
