@@ -2,7 +2,6 @@
 #include "evidence_validator.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "loop_evidence.hpp"

@@ -38,7 +38,7 @@ FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
 /// robot comes back to a floor by another way round, hardly two of them see the same. So what was
 /// not tied to an older visit is matched once more, against all that was seen around the older
 /// nodes. A visit that even this ties nowhere is looked for on the floor as the older ones saw it.
-/// Closures enter by the validator's votes, as all do. The map is solved and its path bent anew if
+/// Closures enter as all do, by the validator. The map is solved and its path bent anew if
 /// there are any. `map` is that of one drive, finished, with `drives` set.
 void TieVisits(const LoopClosureOptions& options, const FloorJoinOptions& joins, BuildingMap& map);
 
