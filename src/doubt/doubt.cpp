@@ -147,7 +147,7 @@ std::vector<Doubt> DoubtsOfWays(const BuildingMap& map) {
   for (const WallCrossing& crossing : FindWallCrossings(map, visits)) {
     const Visit& driven = visits[crossing.driven];
     const double stamp = map.kept_scans[driven.kept].scan.stamp;
-    const double seen = map.kept_scans[visits[crossing.seen].kept].scan.stamp;
+    const double seen = map.kept_scans[visits[crossing.seen.front()].kept].scan.stamp;
     Doubt doubt;
     doubt.kind = DoubtKind::kWalls;
     doubt.floor = driven.floor;

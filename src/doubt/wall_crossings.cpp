@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "masked_mapper/doubt/doubt.hpp"
 #include "place_index.hpp"
 
 namespace masked_mapper {
@@ -19,7 +20,6 @@ constexpr double kBeside = 0.3;        // m of wall on either side of the way: n
 constexpr double kOtherVisit = 15.0;   // m of travel
 constexpr double kOnePass = 5.0;       // m of travel
 constexpr double kAtDoor = 3.0;        // m from where a change of floor begins or ends
-constexpr int kLeastSeen = 3;          // scans
 
 /// How far along `from`-`to` another line crosses it, and how far along that; 0 to 1 is on both.
 bool Cross(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& one,
@@ -102,23 +102,23 @@ bool GoesOn(const std::vector<Eigen::Vector2d>& hits, std::size_t from, std::ptr
   return true;
 }
 
-/// Where the robot left a floor for another, or reached it.
-std::vector<std::pair<FloorId, Eigen::Vector2d>> DoorsOf(const BuildingMap& map) {
-  std::vector<std::pair<FloorId, Eigen::Vector2d>> doors;
+}  // namespace
+
+std::vector<FloorPlace> DoorsOf(const BuildingMap& map) {
+  std::vector<FloorPlace> doors;
   for (std::size_t i = 1; i < map.trajectory.size(); ++i) {
     const TrajectoryPose& before = map.trajectory[i - 1];
     const TrajectoryPose& pose = map.trajectory[i];
     if (before.in_transit == pose.in_transit) continue;
     const TrajectoryPose& outside = before.in_transit ? pose : before;
-    doors.emplace_back(outside.floor, outside.T_world_robot.Translation());
+    doors.push_back({outside.floor, outside.T_world_robot.Translation()});
   }
   return doors;
 }
 
-}  // namespace
-
-std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
-                                            const std::vector<Visit>& visits) {
+std::vector<WallCrossing> FindWallCrossings(
+    const BuildingMap& map, const std::vector<Visit>& visits, const std::vector<FloorPlace>& doors,
+    const std::function<bool(std::size_t driven, std::size_t seen)>& are_asked) {
   const Ways ways(visits);
   std::map<std::size_t, std::vector<std::size_t>> seen_of_driven;
   for (std::size_t seen = 0; seen < visits.size(); ++seen) {
@@ -126,16 +126,15 @@ std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
     for (std::size_t i = 0; i + 1 < hits.size(); ++i) {
       if ((hits[i + 1] - hits[i]).norm() > kWholeWall) continue;
       ways.ForEachThrough(hits[i], hits[i + 1], visits[seen].floor, [&](std::size_t driven) {
-        if (std::abs(visits[driven].travelled_m - visits[seen].travelled_m) < kOtherVisit) return;
+        if (!are_asked(driven, seen)) return;
         if (GoesOn(hits, i, -1) && GoesOn(hits, i + 1, 1)) seen_of_driven[driven].push_back(seen);
       });
     }
   }
-  const auto doors = DoorsOf(map);
   const auto is_at_door = [&](const Visit& visit) {
-    return std::any_of(doors.begin(), doors.end(), [&](const auto& door) {
-      return door.first == visit.floor &&
-             (door.second - visit.T_world_robot.Translation()).norm() <= kAtDoor;
+    return std::any_of(doors.begin(), doors.end(), [&](const FloorPlace& door) {
+      return door.floor == visit.floor &&
+             (door.in_world - visit.T_world_robot.Translation()).norm() <= kAtDoor;
     });
   };
   std::vector<WallCrossing> crossings;
@@ -147,9 +146,39 @@ std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
         visits[driven].travelled_m - visits[crossings.back().driven].travelled_m < kOnePass) {
       continue;
     }
-    crossings.push_back({driven, seen.front()});
+    crossings.push_back({driven, std::move(seen)});
   }
   return crossings;
+}
+
+std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
+                                            const std::vector<Visit>& visits) {
+  return FindWallCrossings(map, visits, DoorsOf(map), [&](std::size_t driven, std::size_t seen) {
+    return std::abs(visits[driven].travelled_m - visits[seen].travelled_m) >= kOtherVisit;
+  });
+}
+
+std::size_t WallsDrivenThrough(const BuildingMap& map, FloorId older, FloorId newer,
+                               const Pose2& T_older_newer) {
+  std::vector<Visit> visits;
+  std::vector<bool> is_newer;
+  for (Visit visit : VisitsOf(map)) {
+    if (visit.floor != older && visit.floor != newer) continue;
+    is_newer.push_back(visit.floor == newer);
+    if (visit.floor == newer) visit.T_world_robot = T_older_newer * visit.T_world_robot;
+    visit.floor = older;
+    visits.push_back(visit);
+  }
+  std::vector<FloorPlace> doors = DoorsOf(map);
+  for (FloorPlace& door : doors) {
+    if (door.floor != newer) continue;
+    door = {older, T_older_newer * door.in_world};
+  }
+  return FindWallCrossings(map, visits, doors,
+                           [&](std::size_t driven, std::size_t seen) {
+                             return is_newer[driven] != is_newer[seen];
+                           })
+      .size();
 }
 
 }  // namespace masked_mapper

@@ -4,6 +4,9 @@
 // driven through is no matter of shares.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "masked_mapper/map/building_map.hpp"
@@ -12,12 +15,30 @@
 namespace masked_mapper {
 
 struct WallCrossing {
-  std::size_t driven = 0;  ///< the visit that drove there, in `visits`
-  std::size_t seen = 0;    ///< the one that saw a wall
+  std::size_t driven = 0;         ///< the visit that drove there, in `visits`
+  std::vector<std::size_t> seen;  ///< those that saw a wall, kLeastSeen or more, in order
 };
 
-/// Of every pass through a wall one, in the order of driving, but for the doors of cabs, which open
-/// and close. `visits`: of the whole map.
+/// Scans that see a wall where there is one: in fewer, it was somebody who stood there.
+constexpr std::size_t kLeastSeen = 3;
+
+/// A place on a floor.
+struct FloorPlace {
+  FloorId floor = 0;
+  Eigen::Vector2d in_world{0.0, 0.0};  ///< m
+};
+
+/// Where the robot left a floor for another, or reached it. There doors of cabs open and close.
+std::vector<FloorPlace> DoorsOf(const BuildingMap& map);
+
+/// Of every pass through a wall one, in the order of driving, but for those at `doors`. `visits`:
+/// of `map`, in its order, wherever they are put; `are_asked`: whether the one may have driven
+/// through what the other saw.
+std::vector<WallCrossing> FindWallCrossings(
+    const BuildingMap& map, const std::vector<Visit>& visits, const std::vector<FloorPlace>& doors,
+    const std::function<bool(std::size_t driven, std::size_t seen)>& are_asked);
+
+/// Of the whole map as it is, between any two visits.
 std::vector<WallCrossing> FindWallCrossings(const BuildingMap& map,
                                             const std::vector<Visit>& visits);
 

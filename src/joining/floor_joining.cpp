@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "masked_mapper/doubt/doubt.hpp"
 #include "piece_search.hpp"
 
 namespace masked_mapper {
@@ -146,6 +147,106 @@ FloorTimeline Merged(const FloorTimeline& floors, const std::vector<std::size_t>
   return merged;
 }
 
+class Joiner {
+ public:
+  Joiner(const BuildingMap& map, const FloorTimeline& floors, const FloorJoinOptions& options,
+         const StoreyOptions& storeys, const MatcherOptions& matcher)
+      : map_(map),
+        floors_(floors),
+        options_(options),
+        storeys_(storeys),
+        matcher_(matcher),
+        names_(FloorNames(floors.levels)) {}
+
+  struct Outcome {
+    FloorJoining joining;
+    /// Levels that were joined with one that has a twin besides: another floor, for all that is
+    /// known, that is as like it. What fits such a floor need not be it.
+    std::vector<bool> twins;
+  };
+
+  /// Where no level is joined with those that have a twin.
+  Outcome Join(const std::vector<bool>& has_twin) const {
+    Identities identities(floors_, storeys_);
+    FloorTimeline told = floors_;
+    FloorJoining joining;
+    std::vector<bool> twins = has_twin;
+    std::vector<bool> was_joined(has_twin.size(), false);
+    std::vector<bool> is_like_another(has_twin.size(), false);
+    for (std::size_t level = 0; level < floors_.levels.size(); ++level) {
+      if (identities.IsKnown(level) || !identities.MayBeOlder(level)) continue;
+      const PieceSearchResult found =
+          FindPiece(map_, QuestionOf(map_, level, identities.is_level(), options_.ride),
+                    options_.places, matcher_);
+      const std::vector<PiecePlacement> ways = ThoseThatWallsAllow(found.ways, level);
+      for (const PiecePlacement& way : ways) {
+        const std::size_t older = OlderLevel(way);
+        if (identities.AreApart(older, level)) is_like_another[older] = true;
+      }
+      std::string reason = found.reason;
+      if (ways.empty() && !found.ways.empty()) {
+        reason = "it looks like another, but leads through walls of that one";
+      }
+      if (ways.size() == 1) {
+        const std::size_t older = OlderLevel(ways.front());
+        if (identities.AreApart(older, level)) {
+          reason =
+              "it looks like floor " + names_[older] + ", which it is not, for all that is known";
+        } else if (has_twin[older]) {
+          reason = "it looks like floor " + names_[older] + ", and so does another that is not it";
+        } else {
+          identities.Join(older, level);
+          was_joined[identities.is_level()[older]] = true;
+          joining.any_joined = true;
+          joining.notes.push_back("floor " + names_[older] +
+                                  " was met again: " + std::to_string(ways.front().fitting) +
+                                  " of " + std::to_string(ways.front().within) +
+                                  " places fit it, and no sensor tells floors apart");
+          continue;
+        }
+      }
+      told.levels[level].open = "no sensor tells, and " + reason;
+    }
+    for (std::size_t level = 0; level < twins.size(); ++level) {
+      const std::size_t is = identities.is_level()[level];
+      if (is_like_another[level] && was_joined[is]) twins[is] = true;
+    }
+    joining.floors = Merged(told, identities.is_level(), storeys_);
+    return {std::move(joining), std::move(twins)};
+  }
+
+ private:
+  static std::size_t OlderLevel(const PiecePlacement& way) {
+    return static_cast<std::size_t>(way.older_floor_of.begin()->second);
+  }
+
+  /// Those that lead through no walls, and those that are no worse by more than may be a door.
+  std::vector<PiecePlacement> ThoseThatWallsAllow(const std::vector<PiecePlacement>& ways,
+                                                  std::size_t level) const {
+    constexpr std::size_t kDoors = 1;
+    std::vector<std::size_t> walls;
+    for (const PiecePlacement& way : ways) {
+      walls.push_back(WallsDrivenThrough(map_, way.older_floor_of.begin()->second,
+                                         static_cast<FloorId>(level), way.T_older_newer));
+    }
+    std::vector<PiecePlacement> allowed;
+    if (ways.empty()) return allowed;
+    const std::size_t fewest = *std::min_element(walls.begin(), walls.end());
+    if (fewest > kDoors) return allowed;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      if (walls[i] <= fewest + kDoors) allowed.push_back(ways[i]);
+    }
+    return allowed;
+  }
+
+  const BuildingMap& map_;
+  const FloorTimeline& floors_;
+  const FloorJoinOptions& options_;
+  const StoreyOptions& storeys_;
+  const MatcherOptions& matcher_;
+  std::vector<std::string> names_;
+};
+
 }  // namespace
 
 bool HasUnknownFloors(const FloorTimeline& floors) {
@@ -165,30 +266,13 @@ DriveJoinOptions FloorJoinOptions::PlacesOfOneDrive() {
 FloorJoining JoinFloors(const BuildingMap& map, const FloorTimeline& floors,
                         const FloorJoinOptions& options, const StoreyOptions& storeys,
                         const MatcherOptions& matcher) {
-  const std::vector<std::string> names = FloorNames(floors.levels);
-  Identities identities(floors, storeys);
-  FloorJoining joining;
-  FloorTimeline told = floors;
-  for (std::size_t level = 0; level < floors.levels.size(); ++level) {
-    if (identities.IsKnown(level) || !identities.MayBeOlder(level)) continue;
-    const PieceSearchResult found = FindPiece(
-        map, QuestionOf(map, level, identities.is_level(), options.ride), options.places, matcher);
-    std::string reason = found.reason;
-    if (found.placement) {
-      const auto older = static_cast<std::size_t>(found.placement->older_floor_of.begin()->second);
-      if (!identities.AreApart(older, level)) {
-        identities.Join(older, level);
-        joining.any_joined = true;
-        joining.notes.push_back("floor " + names[older] + " was met again: " + reason +
-                                " it, and no sensor tells floors apart");
-        continue;
-      }
-      reason = "it looks like floor " + names[older] + ", which it is not, for all that is known";
-    }
-    told.levels[level].open = "no sensor tells, and " + reason;
+  const Joiner joiner(map, floors, options, storeys, matcher);
+  std::vector<bool> has_twin(floors.levels.size(), false);
+  while (true) {
+    Joiner::Outcome outcome = joiner.Join(has_twin);
+    if (outcome.twins == has_twin) return std::move(outcome.joining);
+    has_twin = std::move(outcome.twins);
   }
-  joining.floors = Merged(told, identities.is_level(), storeys);
-  return joining;
 }
 
 }  // namespace masked_mapper

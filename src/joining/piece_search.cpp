@@ -48,10 +48,10 @@ class PieceFinder {
     } else {
       fits_.ReadPlacesAtNodes(question_.newer);
     }
-    if (fits_.places().empty()) return {std::nullopt, "no place of it was seen well enough"};
+    if (fits_.places().empty()) return {std::nullopt, "no place of it was seen well enough", {}};
     fits_.ReadFloors(question_.older);
     std::vector<Guess> guesses = MakeGuesses();
-    if (guesses.empty()) return {std::nullopt, "none of its places was found in the map"};
+    if (guesses.empty()) return {std::nullopt, "none of its places was found in the map", {}};
     ForEach(guesses.size(), matcher_.threads, [&](std::size_t i) { LookAt(guesses[i]); });
     return Decide(guesses);
   }
@@ -296,21 +296,31 @@ class PieceFinder {
     });
     const Guess& best = guesses.front();
     if (!best.is_valid) {
-      return {std::nullopt, "its places do not agree: at best " + Count(best) + " fit alike"};
+      return {std::nullopt, "its places do not agree: at best " + Count(best) + " fit alike", {}};
     }
+    std::vector<const Guess*> ways{&best};
     for (std::size_t i = 1; i < guesses.size(); ++i) {
       const Guess& other = guesses[i];
-      if (!other.is_valid || IsSame(best, other)) continue;
+      const auto is_same = [&](const Guess* way) { return IsSame(*way, other); };
+      if (!other.is_valid || std::any_of(ways.begin(), ways.end(), is_same)) continue;
       int shared = 0;
       const int lead = LeadOf(best, other, &shared);
       const bool is_behind = shared > 0 ? 2 * lead >= shared && lead >= joins_.min_places
                                         : 2 * other.fitting < best.fitting;
-      if (is_behind) continue;
-      return {std::nullopt, "it fits in more than one way: " + Count(best) + " fit one, " +
-                                Count(other) + " another"};
+      if (!is_behind) ways.push_back(&other);
     }
-    PiecePlacement placement{best.T_older_newer, best.older_floor_of, best.fitting, best.within};
-    return {placement, Count(best) + " fit"};
+    PieceSearchResult result;
+    for (const Guess* way : ways) {
+      result.ways.push_back({way->T_older_newer, way->older_floor_of, way->fitting, way->within});
+    }
+    if (ways.size() == 1) {
+      result.placement = result.ways.front();
+      result.reason = Count(best) + " fit";
+    } else {
+      result.reason = "it fits in more than one way: " + Count(best) + " fit one, " +
+                      Count(*ways[1]) + " another";
+    }
+    return result;
   }
 
   const BuildingMap& map_;

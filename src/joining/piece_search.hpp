@@ -28,7 +28,8 @@ struct PiecePlacement {
 
 struct PieceSearchResult {
   std::optional<PiecePlacement> placement;
-  std::string reason;  ///< for people: why there is one, or none
+  std::string reason;                ///< for people: why there is one, or none
+  std::vector<PiecePlacement> ways;  ///< in which it fits, none clearly better; one: `placement`
 };
 
 /// Stretches of the way driven.

@@ -7,10 +7,12 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "clouds_at_poses.hpp"
 #include "masked_mapper.hpp"
+#include "masked_mapper/doubt/doubt.hpp"
 #include "masked_mapper/joining/floor_joining.hpp"
 #include "masked_mapper/log/log_summary.hpp"
 #include "masked_mapper/map/building_map.hpp"
@@ -121,15 +123,12 @@ class LogDrive {
     progress_.Stage("mapping");
     DriveThrough();
     BuildingMap result = mapper_->Finish();
+    while (ChangesWereFound(result)) result = MapAgain("mapping, floors parted", result.seconds);
     const bool joined = HasUnknownFloors(survey_.floors) && FloorsWereJoined(result);
     const bool learnt = WheelsWereLearnt(result);
     if (joined || learnt) {
-      progress_.Stage(joined ? "mapping, floors joined" : "mapping, wheels known");
-      spent_ += result.seconds;  // what is driven again costs twice
-      Begin();
-      if (checkpoints_ != nullptr) checkpoints_->StartOver();
-      DriveThrough();
-      result = mapper_->Finish();
+      result =
+          MapAgain(joined ? "mapping, floors joined" : "mapping, wheels known", result.seconds);
     }
     result.log = log_->Statistics();
     result.seconds += spent_;
@@ -171,6 +170,55 @@ class LogDrive {
     log_ = ReadStraightened(
         source_, {survey_.sweep_s_per_rad, settled_.motion.source != MotionSource::kScans});
     observations_ = scans_ = 0;
+  }
+
+  BuildingMap MapAgain(const char* stage, const StageSeconds& spent) {
+    progress_.Stage(stage);
+    spent_ += spent;  // what is driven again costs twice
+    Begin();
+    if (checkpoints_ != nullptr) checkpoints_->StartOver();
+    DriveThrough();
+    return mapper_->Finish();
+  }
+
+  // Where nothing but scans tells floors, and no map has settled them yet.
+  bool ChangesWereFound(const BuildingMap& map) {
+    FloorTimeline& floors = survey_.floors;
+    const bool scans_tell = survey_.floor_source == FloorSource::kLidar ||
+                            (survey_.floor_source == FloorSource::kNone &&
+                             options_.floors.source == FloorSource::kAuto);
+    const bool are_open = HasUnknownFloors(floors) || floors.levels.size() == 1;
+    if (!scans_tell || !are_open || survey_.wheels) return false;
+    const StageTimer timer(spent_.matching);
+    const std::vector<UnnoticedChange> found = FindUnnoticedChanges(map);
+    if (found.empty()) return false;
+    std::vector<FloorTransit> transits = TransitsOf(floors);
+    for (const UnnoticedChange& change : found) {
+      FloorTransit transit;
+      transit.start = change.t_out;
+      transit.middle = 0.5 * (change.t_out + change.t_in);
+      transit.end = change.t_in;
+      transit.by.Add(FloorSource::kLidar);
+      transits.push_back(transit);
+      survey_.warnings.push_back("the way from " + FixedText(change.t_out, 2) + " to " +
+                                 FixedText(change.t_in, 2) +
+                                 " s is taken for one to another floor: walls that were seen "
+                                 "before it were driven through after it, "
+                                 "and no sensor tells floors");
+    }
+    std::sort(transits.begin(), transits.end(), [](const auto& one, const auto& other) {
+      return std::tie(one.start, one.end) < std::tie(other.start, other.end);
+    });
+    floors = TimelineOfTransits(transits, options_.floors.storeys);
+    std::vector<TravelledWay> way;
+    double travelled_m = 0.0;
+    for (std::size_t i = 0; i < map.trajectory.size(); ++i) {
+      const Pose2& here = map.trajectory[i].T_odom_robot;
+      if (i > 0) travelled_m += Distance(map.trajectory[i - 1].T_odom_robot, here);
+      way.push_back({map.trajectory[i].stamp, travelled_m});
+    }
+    NoteTravel(way, floors);
+    return true;
   }
 
   // With a floor met again as one level, its visits are matched with each other like any others;

@@ -232,4 +232,19 @@ FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
   return timeline;
 }
 
+std::vector<FloorTransit> TransitsOf(const FloorTimeline& timeline) {
+  std::vector<FloorTransit> transits;
+  for (const FloorChange& change : ChangesOf(timeline)) {
+    const auto reached = std::find_if(
+        timeline.intervals.begin(), timeline.intervals.end(), [&](const FloorInterval& interval) {
+          return interval.start > change.t_out && interval.level == change.to;
+        });
+    const double middle =
+        reached == timeline.intervals.end() ? change.t_in : std::min(reached->start, change.t_in);
+    transits.push_back(
+        {change.t_out, middle, change.t_in, change.climb, change.climb_sigma, change.by});
+  }
+  return transits;
+}
+
 }  // namespace masked_mapper

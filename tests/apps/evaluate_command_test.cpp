@@ -172,5 +172,26 @@ TEST(EvaluateCommand, ByLidarAndWheelsAloneAFloorMetAgainIsOneFloor) {
   EXPECT_LT(json.at("trajectory").at("max_m"), 0.2) << "m";
 }
 
+// Three floors of one plan, tied by stairs: what parts them are the walls that would have
+// been driven through.
+TEST(EvaluateCommand, ByLidarAndWheelsAloneStairsBetweenFloorsOfOnePlanAreFound) {
+  const ScratchFolder folder;
+  const std::string log = folder / "random.log";
+  ASSERT_EQ(RunProgram({"simulate", "--building", "random", "--seed", "22", "-o", log, "--quiet",
+                        "--without-pressure"})
+                .code,
+            0);
+  const Ran mapped = RunProgram({"map", log, "-o", folder / "out"});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  EXPECT_TRUE(Contains(mapped.err, "is taken for one to another floor")) << mapped.err;
+  const Ran evaluated = RunProgram(
+      {"evaluate", folder / "out", "--truth", folder / "random.log.truth.tum", "--json"});
+  ASSERT_EQ(evaluated.code, 0) << evaluated.err;
+  const nlohmann::json json = nlohmann::json::parse(evaluated.out);
+  EXPECT_EQ(json.at("floors").at("right"), 1.0);
+  EXPECT_EQ(json.at("closures").at("false"), 0);
+  EXPECT_LT(json.at("trajectory").at("max_m"), 0.2) << "m";
+}
+
 }  // namespace
 }  // namespace masked_mapper

@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "mapping/ring_logs.hpp"
+#include "doubt/screened_map.hpp"
 
 namespace masked_mapper {
 namespace {
-
-/// Twice and more round a ring of corridors, mapped right.
-BuildingMap RightMap() {
-  static const BuildingMap map = MapOf(First(), "doubt.log");
-  return map;
-}
 
 /// The poses from a share of the drive on, moved by `T_moved` about where it begins.
 BuildingMap WithTheRestMoved(const BuildingMap& right, double share, const Pose2& T_moved) {
@@ -58,42 +53,14 @@ TEST(Doubt, ASecondVisitThatHangsBesideTheFirstIsListedAtItsPlace) {
 
 // Two floors of one plan taken for one agree in all but the wall that hides the stairs of one.
 TEST(Doubt, AWayThroughAWallIsListedHoweverMuchElseAgrees) {
-  BuildingMap map = RightMap();
-  // The robot was there twice. On the first visit a screen stood across the way.
-  const std::vector<KeptScan>& kept = map.kept_scans;
-  const auto pose_of = [&](std::size_t i) -> const Pose2& {
-    return map.trajectory[kept[i].trajectory_index].T_world_robot;
-  };
-  const auto was_passed = [&](std::size_t i) {
-    for (std::size_t k = 0; k < kept.size() / 2; ++k) {
-      if (Distance(pose_of(k), pose_of(i)) < 0.5) return true;
-    }
-    return false;
-  };
-  std::size_t crossed = kept.size() - 1;
-  while (!was_passed(crossed) || !was_passed(crossed - 90)) --crossed;
-  crossed -= 50;
-  const Pose2 T_world_screen = pose_of(crossed);
-  for (std::size_t i = 0; i < kept.size() / 2; ++i) {
-    LaserScan& scan = map.kept_scans[i].scan;
-    const Pose2 T_laser_screen = Inverse(pose_of(i) * scan.T_robot_laser) * T_world_screen;
-    if (T_laser_screen.Translation().norm() > 4.0) continue;
-    for (std::size_t beam = 0; beam < scan.size(); ++beam) {
-      const Eigen::Vector2d direction(std::cos(scan.Angle(beam)), std::sin(scan.Angle(beam)));
-      const Pose2 T_screen_laser = Inverse(T_laser_screen);
-      const Eigen::Vector2d ray = T_screen_laser * direction - T_screen_laser.Translation();
-      const double range = -T_screen_laser.x / ray.x();
-      const double across = T_screen_laser.y + range * ray.y();
-      if (range > 0.0 && std::abs(across) < 0.8) {
-        scan.ranges[beam] = std::min(scan.ranges[beam], static_cast<float>(range));
-      }
-    }
-  }
+  const MapWithScreens screened;
+  const BuildingMap& map = screened.map;
+  const Pose2& T_world_screen = screened.T_world_screen;
   const std::vector<Doubt> doubts = FindDoubts(map);
   const auto way = std::find_if(doubts.begin(), doubts.end(), [](const Doubt& doubt) {
     return doubt.text.find("leads through a wall") != std::string::npos;
   });
-  ASSERT_NE(way, doubts.end()) << crossed << " of " << kept.size();
+  ASSERT_NE(way, doubts.end()) << screened.crossed << " of " << map.kept_scans.size();
   EXPECT_EQ(way->kind, DoubtKind::kWalls);
   EXPECT_LT(std::hypot(way->x - T_world_screen.x, way->y - T_world_screen.y), 1.0);
 }

@@ -96,6 +96,27 @@ TEST(JoinFloors, AnotherFloorAtTheSamePlaceStaysApart) {
   EXPECT_FALSE(HasUnknownFloors(joining.floors)) << "it was looked at, and is another";
 }
 
+// Of floors of one plan any may be the one met again.
+TEST(JoinFloors, AFloorThatAnotherIsAsLikeIsNotTakenForMetAgain) {
+  const RingDrive drive(2.4, 0.2);
+  FloorTimeline floors = ThreeVisits(drive);
+  const auto stamp = [&](double share) {
+    return drive.scans[static_cast<std::size_t>(share * static_cast<double>(drive.scans.size()))]
+        .stamp;
+  };
+  // The last visit goes on to yet another level: that is not the one before, and looks like it.
+  floors.levels.push_back({"", 10.5, 3.5, false, false, ""});
+  floors.intervals.push_back({stamp(0.75), 2, true, 5.0});
+  floors.intervals.push_back({stamp(0.755), 3, true, 5.0});
+  floors.intervals.push_back({stamp(0.76), 3, false});
+  const FloorJoining joining = JoinFloors(MapOf(drive.scans, floors), floors, {}, {}, {});
+  EXPECT_FALSE(joining.any_joined);
+  ASSERT_EQ(joining.floors.levels.size(), 4U);
+  EXPECT_NE(joining.floors.levels[2].open.find("looks like floor 0"), std::string::npos)
+      << joining.floors.levels[2].open;
+  EXPECT_FALSE(joining.floors.levels[3].open.empty());
+}
+
 TEST(JoinFloors, KnownFloorsAndEmptyMapsAreLeftAlone) {
   const FloorTimeline one;
   EXPECT_FALSE(HasUnknownFloors(one));

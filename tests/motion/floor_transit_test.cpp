@@ -77,6 +77,38 @@ TEST(TimelineOfTransits, AFloorMetAgainIsTheOneItWas) {
   EXPECT_EQ(FloorNames(timeline.levels), (std::vector<std::string>{"0", "1", "2", "-1"}));
 }
 
+TEST(TransitsOf, AreThoseThatTheTimelineWasMadeOf) {
+  std::vector<FloorTransit> transits = Rides({3.6, 3.4, -7.1});
+  transits[1].climb.reset();
+  transits[2].by.Add(FloorSource::kLidar);
+  for (std::size_t count = 0; count <= transits.size(); ++count) {
+    const std::vector<FloorTransit> first(transits.begin(), transits.begin() + count);
+    const std::vector<FloorTransit> found = TransitsOf(TimelineOfTransits(first, {}));
+    ASSERT_EQ(found.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(found[i].start, transits[i].start);
+      EXPECT_EQ(found[i].middle, transits[i].middle);
+      EXPECT_EQ(found[i].end, transits[i].end);
+      EXPECT_EQ(found[i].climb, transits[i].climb);
+      EXPECT_EQ(found[i].by.bits, transits[i].by.bits);
+    }
+  }
+}
+
+TEST(TransitsOf, OneThatTheLogBeginsOrEndsInIsKept) {
+  std::vector<FloorTransit> transits = Rides({3.6, 3.4, -7.1});
+  transits.front().start = -kInfinity;
+  transits.back().end = kInfinity;
+  const FloorTimeline timeline = TimelineOfTransits(transits, {});
+  const FloorTimeline again = TimelineOfTransits(TransitsOf(timeline), {});
+  ASSERT_EQ(again.intervals.size(), timeline.intervals.size());
+  for (std::size_t i = 0; i < again.intervals.size(); ++i) {
+    EXPECT_EQ(again.intervals[i].start, timeline.intervals[i].start);
+    EXPECT_EQ(again.intervals[i].level, timeline.intervals[i].level);
+    EXPECT_EQ(again.intervals[i].in_transit, timeline.intervals[i].in_transit);
+  }
+}
+
 TEST(TimelineOfTransits, HalfWayTheOtherFloorIsNearer) {
   const FloorTimeline timeline = TimelineOfTransits(Rides({3.5}), {});
   EXPECT_EQ(timeline.At(111.0).level, 0U);

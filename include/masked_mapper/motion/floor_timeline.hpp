@@ -144,4 +144,7 @@ void SettleElevations(const StoreyOptions& options, FloorTimeline& timeline);
 FloorTimeline TimelineOfTransits(const std::vector<FloorTransit>& all,
                                  const StoreyOptions& options);
 
+/// The transits of a timeline whose levels no map has joined.
+std::vector<FloorTransit> TransitsOf(const FloorTimeline& timeline);
+
 }  // namespace masked_mapper
