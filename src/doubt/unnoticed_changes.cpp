@@ -26,7 +26,6 @@ constexpr double kFlight = 0.35;        // of the way at either end
 constexpr double kCabSeen = 15.0;       // m^2 of a scan in a cab and through its open door
 constexpr double kCab = 0.5;            // m moved in it
 constexpr double kShortestRide = 8.0;   // s
-constexpr std::ptrdiff_t kDoors = 1;    // walls driven through that say nothing for a cab
 
 /// Visits from `begin` to before `end`, one after the other on one floor.
 struct Stretch {
@@ -37,8 +36,7 @@ struct Stretch {
 /// What may have been the way to another floor.
 struct Passage {
   Stretch visits;
-  UnnoticedChange span;
-  std::ptrdiff_t least_parted = 1;
+  TimeSpan span;
 };
 
 /// Two visits that cannot have been to one floor.
@@ -102,7 +100,7 @@ std::vector<Passage> StairsOfTwoFlights(const BuildingMap& map, const std::vecto
     const auto stamp_of = [&](std::size_t visit) {
       return map.kept_scans[visits[visit].kept].scan.stamp;
     };
-    stairs.push_back({stretch, {stamp_of(stretch.begin), stamp_of(stretch.end - 1)}, 1});
+    stairs.push_back({stretch, {stamp_of(stretch.begin), stamp_of(stretch.end - 1)}});
   }
   return stairs;
 }
@@ -127,7 +125,7 @@ std::vector<Passage> StandsAsInACab(const BuildingMap& map, const std::vector<Vi
            map.kept_scans[visits[stretch.end].kept].trajectory_index <= last) {
       ++stretch.end;
     }
-    cabs.push_back({stretch, {poses[first].stamp, poses[last].stamp}, kDoors + 1});
+    cabs.push_back({stretch, {poses[first].stamp, poses[last].stamp}});
   }
   return cabs;
 }
@@ -152,33 +150,60 @@ bool Parts(const Passage& passage, const Contradiction& contradiction) {
   return contradiction.earlier < passage.visits.begin && contradiction.later >= passage.visits.end;
 }
 
+bool Overlap(const TimeSpan& one, const TimeSpan& other) {
+  return one.start <= other.end && other.start <= one.end;
+}
+
+/// Takes out of `open` what the passages part that part the most, and puts these into `found`.
+void Settle(std::vector<Passage> passages, std::ptrdiff_t least_parted,
+            std::vector<Contradiction>& open, std::vector<TimeSpan>& found) {
+  for (const TimeSpan& known : found) {
+    const auto is_taken = [&](const Passage& one) { return Overlap(known, one.span); };
+    passages.erase(std::remove_if(passages.begin(), passages.end(), is_taken), passages.end());
+  }
+  while (!passages.empty()) {
+    const auto parted_by = [&](const Passage& passage) {
+      return std::count_if(open.begin(), open.end(),
+                           [&](const Contradiction& one) { return Parts(passage, one); });
+    };
+    const Passage best = *std::max_element(passages.begin(), passages.end(),
+                                           [&](const Passage& one, const Passage& other) {
+                                             return parted_by(one) < parted_by(other);
+                                           });
+    if (parted_by(best) < least_parted) return;
+    found.push_back(best.span);
+    const auto is_settled = [&](const Contradiction& one) { return Parts(best, one); };
+    open.erase(std::remove_if(open.begin(), open.end(), is_settled), open.end());
+    const auto is_taken = [&](const Passage& one) { return Overlap(best.span, one.span); };
+    passages.erase(std::remove_if(passages.begin(), passages.end(), is_taken), passages.end());
+  }
+}
+
+std::vector<Passage> Unheard(std::vector<Passage> passages, const std::vector<TimeSpan>& heard) {
+  const auto was_heard = [&](const Passage& passage) {
+    return std::any_of(heard.begin(), heard.end(), [&](const TimeSpan& span) {
+      return span.start <= passage.span.start && passage.span.end <= span.end;
+    });
+  };
+  passages.erase(std::remove_if(passages.begin(), passages.end(), was_heard), passages.end());
+  return passages;
+}
+
 }  // namespace
 
-std::vector<UnnoticedChange> FindUnnoticedChanges(const BuildingMap& map) {
+std::vector<TimeSpan> FindUnnoticedChanges(const BuildingMap& map,
+                                           const std::vector<TimeSpan>& heard) {
   const std::vector<Visit> visits = VisitsOf(map);
-  std::vector<Passage> passages = StairsOfTwoFlights(map, visits);
-  const std::vector<Passage> cabs = StandsAsInACab(map, visits);
-  passages.insert(passages.end(), cabs.begin(), cabs.end());
-  if (passages.empty()) return {};
+  const std::vector<Passage> stairs = Unheard(StairsOfTwoFlights(map, visits), heard);
+  const std::vector<Passage> cabs = Unheard(StandsAsInACab(map, visits), heard);
+  if (stairs.empty() && cabs.empty()) return {};
   std::vector<Contradiction> open = ContradictionsOf(FindWallCrossings(map, visits));
-  std::vector<UnnoticedChange> found;
-  while (!open.empty()) {
-    std::ptrdiff_t most = 0;
-    const Passage* best = nullptr;
-    for (const Passage& passage : passages) {
-      const std::ptrdiff_t parted = std::count_if(
-          open.begin(), open.end(), [&](const Contradiction& one) { return Parts(passage, one); });
-      if (parted <= most || parted < passage.least_parted) continue;
-      most = parted;
-      best = &passage;
-    }
-    if (best == nullptr) break;
-    found.push_back(best->span);
-    const auto is_settled = [&](const Contradiction& one) { return Parts(*best, one); };
-    open.erase(std::remove_if(open.begin(), open.end(), is_settled), open.end());
-  }
+  std::vector<TimeSpan> found;
+  // Robots stand in many a narrow place, and one wall may be a door; flights of stairs are rare.
+  Settle(stairs, 1, open, found);
+  Settle(cabs, 2, open, found);
   std::sort(found.begin(), found.end(),
-            [](const auto& one, const auto& other) { return one.t_out < other.t_out; });
+            [](const TimeSpan& one, const TimeSpan& other) { return one.start < other.start; });
   return found;
 }
 

@@ -136,6 +136,7 @@ FloorTimeline Merged(const FloorTimeline& floors, const std::vector<std::size_t>
     merged.levels.push_back(floors.levels[level]);
   }
   merged.intervals = floors.intervals;
+  merged.heard = floors.heard;
   for (FloorInterval& interval : merged.intervals) {
     interval.level = place[is_level[interval.level]];
   }
@@ -212,6 +213,7 @@ class Joiner {
       if (is_like_another[level] && was_joined[is]) twins[is] = true;
     }
     joining.floors = Merged(told, identities.is_level(), storeys_);
+    joining.floors.joined = floors_.joined || joining.any_joined;
     return {std::move(joining), std::move(twins)};
   }
 

@@ -85,8 +85,9 @@ template <class Archive>
 void Serialize(Archive& archive, LogSurvey& survey) {
   archive(survey.scans, survey.has_odometry, survey.odometry_moves, survey.median_travel_m,
           survey.median_turn_rad, survey.median_period_s, survey.sweep_s_per_rad,
-          survey.floors.levels, survey.floors.intervals, survey.floor_source, survey.findings,
-          survey.mending, survey.wheels, survey.reconsidered, survey.warnings);
+          survey.floors.levels, survey.floors.intervals, survey.floors.heard, survey.floors.joined,
+          survey.floor_source, survey.findings, survey.mending, survey.wheels, survey.reconsidered,
+          survey.warnings);
 }
 
 namespace {

@@ -70,6 +70,16 @@ std::vector<TransitRecord> TransitsOf(const FloorTimeline& floors, const LogStat
   return transits;
 }
 
+std::vector<TravelledWay> WayOf(const std::vector<TrajectoryPose>& trajectory) {
+  std::vector<TravelledWay> way;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const double before = i == 0 ? 0.0 : way.back().travelled_m;
+    const Pose2& last = trajectory[i == 0 ? 0 : i - 1].T_odom_robot;
+    way.push_back({trajectory[i].stamp, before + Distance(last, trajectory[i].T_odom_robot)});
+  }
+  return way;
+}
+
 // What the checkpoint keeps beside the mapper: the survey, so that the log is not surveyed again.
 std::string PackState(const LogSurvey& survey, std::string motion, MaskedMapper& mapper) {
   std::string survey_bytes = PackSurvey(survey);
@@ -181,43 +191,42 @@ class LogDrive {
     return mapper_->Finish();
   }
 
-  // Where nothing but scans tells floors, and no map has settled them yet.
+  // Where nothing but scans would have told, and before levels are joined by how they look.
   bool ChangesWereFound(const BuildingMap& map) {
+    const FloorSource source = options_.floors.source;
+    const bool scans_tell = source == FloorSource::kAuto || source == FloorSource::kLidar;
     FloorTimeline& floors = survey_.floors;
-    const bool scans_tell = survey_.floor_source == FloorSource::kLidar ||
-                            (survey_.floor_source == FloorSource::kNone &&
-                             options_.floors.source == FloorSource::kAuto);
-    const bool are_open = HasUnknownFloors(floors) || floors.levels.size() == 1;
-    if (!scans_tell || !are_open || survey_.wheels) return false;
+    if (!scans_tell || floors.joined || survey_.wheels) return false;
     const StageTimer timer(spent_.matching);
-    const std::vector<UnnoticedChange> found = FindUnnoticedChanges(map);
+    const std::vector<TimeSpan> found = FindUnnoticedChanges(map, floors.heard);
     if (found.empty()) return false;
     std::vector<FloorTransit> transits = TransitsOf(floors);
-    for (const UnnoticedChange& change : found) {
+    const std::size_t known = transits.size();
+    for (const TimeSpan& change : found) {
+      const auto meets = [&](const FloorTransit& other) {
+        return other.start <= change.end && change.start <= other.end;
+      };
+      if (std::any_of(transits.begin(), transits.end(), meets)) continue;
       FloorTransit transit;
-      transit.start = change.t_out;
-      transit.middle = 0.5 * (change.t_out + change.t_in);
-      transit.end = change.t_in;
+      transit.start = change.start;
+      transit.middle = 0.5 * (change.start + change.end);
+      transit.end = change.end;
       transit.by.Add(FloorSource::kLidar);
       transits.push_back(transit);
-      survey_.warnings.push_back("the way from " + FixedText(change.t_out, 2) + " to " +
-                                 FixedText(change.t_in, 2) +
+      survey_.warnings.push_back("the way from " + FixedText(change.start, 2) + " to " +
+                                 FixedText(change.end, 2) +
                                  " s is taken for one to another floor: walls that were seen "
-                                 "before it were driven through after it, "
-                                 "and no sensor tells floors");
+                                 "before it were driven through after it, or the reverse, and no "
+                                 "sensor tells floors");
     }
+    if (transits.size() == known) return false;
     std::sort(transits.begin(), transits.end(), [](const auto& one, const auto& other) {
       return std::tie(one.start, one.end) < std::tie(other.start, other.end);
     });
+    const std::vector<TimeSpan> heard = floors.heard;
     floors = TimelineOfTransits(transits, options_.floors.storeys);
-    std::vector<TravelledWay> way;
-    double travelled_m = 0.0;
-    for (std::size_t i = 0; i < map.trajectory.size(); ++i) {
-      const Pose2& here = map.trajectory[i].T_odom_robot;
-      if (i > 0) travelled_m += Distance(map.trajectory[i - 1].T_odom_robot, here);
-      way.push_back({map.trajectory[i].stamp, travelled_m});
-    }
-    NoteTravel(way, floors);
+    floors.heard = heard;
+    NoteTravel(WayOf(map.trajectory), floors);
     return true;
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -210,10 +211,17 @@ FloorTimeline FloorTracker::Impl::Finish() {
                                : evidence.sources.front() == FloorSource::kPressure
                                    ? "pressure"
                                    : "acceleration";
+    // What they do not say did not happen.
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     LabelledTimeline labelled = TimelineOfLabels(labels_, Fused(evidence.sensors), sensor, track_,
                                                  options_.labels, options_.storeys);
     warnings_.insert(warnings_.end(), labelled.warnings.begin(), labelled.warnings.end());
+    labelled.timeline.heard = {{-kInfinity, kInfinity}};
     return std::move(labelled.timeline);
+  }
+  std::vector<TimeSpan> heard;
+  for (const FloorEvidence& sensor : evidence.sensors) {
+    heard.insert(heard.end(), sensor.heard.begin(), sensor.heard.end());
   }
   if (options_.source != FloorSource::kLabels) {
     if (ScansMayTell(evidence)) {
@@ -225,7 +233,9 @@ FloorTimeline FloorTracker::Impl::Finish() {
     }
     if (!evidence.sources.empty()) {
       source_ = evidence.sources.front();
-      return TimelineOfTransits(Fused(evidence.sensors), options_.storeys);
+      FloorTimeline timeline = TimelineOfTransits(Fused(evidence.sensors), options_.storeys);
+      timeline.heard = std::move(heard);
+      return timeline;
     }
   }
   if (options_.source != FloorSource::kAuto) {

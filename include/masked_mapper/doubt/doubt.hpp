@@ -38,15 +38,11 @@ const char* Name(DoubtKind kind);
 /// In order of kinds, then of stamps.
 std::vector<Doubt> FindDoubts(const BuildingMap& map);
 
-/// A way to another floor that no sensor told of.
-struct UnnoticedChange {
-  double t_out = 0.0;  ///< s
-  double t_in = 0.0;   ///< s
-};
-
-/// Those that part, as few as possible, visits of one floor of which one drove through walls that
-/// the other saw; in order. For a map whose floors nothing but scans tells.
-std::vector<UnnoticedChange> FindUnnoticedChanges(const BuildingMap& map);
+/// Ways to another floor that nothing told of: those that part, as few as possible, visits of one
+/// floor of which one drove through walls that the other saw. In order, not overlapping. `heard`:
+/// when nothing can have gone unnoticed.
+std::vector<TimeSpan> FindUnnoticedChanges(const BuildingMap& map,
+                                           const std::vector<TimeSpan>& heard);
 
 /// If floor `newer` were floor `older`, and lay there as `T_older_newer` says: how often a way on
 /// the one would lead through a wall that was seen on the other.

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "masked_mapper/sensor/observation.hpp"
+
 namespace masked_mapper {
 
 enum class FloorSource {
@@ -60,6 +62,9 @@ struct FloorInterval {
 struct FloorTimeline {
   std::vector<FloorLevel> levels = {FloorLevel{}};  ///< in order of first visit, never empty
   std::vector<FloorInterval> intervals = {FloorInterval{}};  ///< in order of start, never empty
+  /// In which labels or a sensor of heights were listening: no change goes unnoticed within one.
+  std::vector<TimeSpan> heard = {};
+  bool joined = false;  ///< whether a map has said that levels are one
 
   const FloorInterval& At(double stamp) const;
 };
