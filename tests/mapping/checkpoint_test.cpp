@@ -162,6 +162,8 @@ TEST(Checkpoint, ASurveyComesBack) {
   survey.sweep_s_per_rad = -0.03;
   survey.floors.levels.push_back({"up", 3.5, 0.1, true, false, "it fits two"});
   survey.floors.intervals.push_back({12.5, 1, true});
+  survey.floors.heard = {{-1.0, 3.5}, {8.0, 9.0}};
+  survey.floors.joined = true;
   survey.floor_source = FloorSource::kPressure;
   survey.warnings = {"a", ""};
   const LogSurvey back = UnpackSurvey(PackSurvey(survey));
@@ -175,6 +177,9 @@ TEST(Checkpoint, ASurveyComesBack) {
   EXPECT_FALSE(back.floors.levels[1].identity_known);
   EXPECT_EQ(back.floors.levels[1].open, "it fits two");
   EXPECT_EQ(back.floors.intervals[1].start, 12.5);
+  ASSERT_EQ(back.floors.heard.size(), 2U);
+  EXPECT_EQ(back.floors.heard[1].end, 9.0);
+  EXPECT_TRUE(back.floors.joined);
   EXPECT_EQ(back.floor_source, FloorSource::kPressure);
   EXPECT_EQ(back.warnings, survey.warnings);
   survey.floors.intervals[1].level = 2;
