@@ -22,8 +22,12 @@ function(masked_mapper_flags target)
       -Wno-maybe-uninitialized)
     target_link_options(${target} PUBLIC -fsanitize=${MASKED_MAPPER_SANITIZE})
   endif()
-  if(TARGET masked_mapper_precompiled AND NOT target STREQUAL masked_mapper_precompiled)
-    target_precompile_headers(${target} REUSE_FROM masked_mapper_precompiled)
+  if(TARGET masked_mapper_precompiled AND NOT target MATCHES "^masked_mapper_precompiled")
+    if(target MATCHES "_test$" AND TARGET masked_mapper_precompiled_for_tests)
+      target_precompile_headers(${target} REUSE_FROM masked_mapper_precompiled_for_tests)
+    else()
+      target_precompile_headers(${target} REUSE_FROM masked_mapper_precompiled)
+    endif()
   endif()
   if(MASKED_MAPPER_COVERAGE)
     target_compile_options(${target} PRIVATE --coverage)
@@ -31,17 +35,18 @@ function(masked_mapper_flags target)
   endif()
 endfunction()
 
-# The dearest headers, compiled once for all targets. Off by default: a file that forgot an #include
-# would go unnoticed.
-function(masked_mapper_precompile)
-  set(source ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
+# masked_mapper_precompile(target [header...]): the dearest headers and the ones named, compiled once for
+# all targets that come after. The linter reads every file without them, so that one that forgot an
+# #include does not go unnoticed.
+function(masked_mapper_precompile target)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
   file(GENERATE OUTPUT ${source} CONTENT "")
-  add_library(masked_mapper_precompiled STATIC ${source})
-  masked_mapper_flags(masked_mapper_precompiled)
-  target_link_libraries(masked_mapper_precompiled PRIVATE Eigen3::Eigen pcl_common_only)
-  target_precompile_headers(masked_mapper_precompiled PRIVATE
-    <Eigen/Core> <algorithm> <filesystem> <fstream> <functional> <map> <memory> <pcl/point_cloud.h>
-    <pcl/point_types.h> <regex> <sstream> <string> <vector>)
+  add_library(${target} STATIC ${source})
+  masked_mapper_flags(${target})
+  target_link_libraries(${target} PRIVATE Eigen3::Eigen pcl_common_only)
+  target_precompile_headers(${target} PRIVATE
+    <Eigen/Core> <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional>
+    <pcl/point_cloud.h> <pcl/point_types.h> <regex> <set> <sstream> <string> <vector> ${ARGN})
 endfunction()
 
 # Everything compiled goes through ccache, where it is installed. What is compiled once for all targets
