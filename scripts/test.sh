@@ -38,8 +38,8 @@ part_release() { build_and_test release; }
 part_format() { scripts/format.sh --check; }
 
 part_tidy() {
-  configure release
-  run-clang-tidy -p build/release -quiet -j "$jobs" "$PWD/(src|apps|examples)/" \
+  configure tidy
+  run-clang-tidy -p build/tidy -quiet -j "$jobs" "$PWD/(src|apps|examples)/" \
     >build/tidy.log 2>build/tidy.errors || { grep -vE '^(/usr/bin/)?clang-tidy|^$' build/tidy.log; return 1; }
 }
 
