@@ -19,7 +19,7 @@ function(masked_mapper_flags target)
   if(MASKED_MAPPER_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${MASKED_MAPPER_SANITIZE}
                            -fno-sanitize-recover=all -fno-omit-frame-pointer -g1
-      -Wno-maybe-uninitialized)
+                           $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(${target} PUBLIC -fsanitize=${MASKED_MAPPER_SANITIZE})
   endif()
   if(TARGET masked_mapper_precompiled AND NOT target MATCHES "^masked_mapper_precompiled")
