@@ -154,7 +154,7 @@ TEST(CalibrationFinderTest, JudgesEachRange) {
   std::uint64_t invalid = 0;
   const LaserScan scan = CalibrationFinder(options).Find().Apply(raw, &invalid);
   EXPECT_EQ(scan.ranges[0], 1.0F);
-  for (const std::size_t beam : {1, 2, 3, 4, 6, 9})
+  for (const std::size_t beam : {1U, 2U, 3U, 4U, 6U, 9U})
     EXPECT_TRUE(std::isnan(scan.ranges[beam])) << beam;
   EXPECT_EQ(scan.ranges[5], kNoReturn);
   EXPECT_EQ(scan.ranges[7], kNoReturn);

@@ -26,7 +26,7 @@ inline WheelTrack TrackOf(const SyntheticDrive& drive) {
 inline SyntheticDrive FourFloors(unsigned seed, double roam_s) {
   SyntheticDrive drive({0.0, 4.0, 7.5, 11.0}, 0, seed);
   drive.Roam(200.0);
-  for (const std::size_t floor : {1, 3, 0, 2, 1, 0}) {
+  for (const std::size_t floor : {1U, 3U, 0U, 2U, 1U, 0U}) {
     drive.TakeElevator(floor);
     drive.Roam(roam_s);
   }

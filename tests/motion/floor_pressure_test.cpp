@@ -93,7 +93,7 @@ TEST(FloorPressure, StairsAreTransitWithMotion) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     SyntheticDrive drive({0.0, 3.5, 7.0}, 0, seed);
     drive.Roam(100.0);
-    for (const std::size_t floor : {1, 2, 1, 0}) {
+    for (const std::size_t floor : {1U, 2U, 1U, 0U}) {
       drive.TakeStairs(floor);
       drive.Roam(100.0);
     }

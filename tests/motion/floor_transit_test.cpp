@@ -82,7 +82,8 @@ TEST(TransitsOf, AreThoseThatTheTimelineWasMadeOf) {
   transits[1].climb.reset();
   transits[2].by.Add(FloorSource::kLidar);
   for (std::size_t count = 0; count <= transits.size(); ++count) {
-    const std::vector<FloorTransit> first(transits.begin(), transits.begin() + count);
+    const std::vector<FloorTransit> first(
+        transits.begin(), std::next(transits.begin(), static_cast<std::ptrdiff_t>(count)));
     const std::vector<FloorTransit> found = TransitsOf(TimelineOfTransits(first, {}));
     ASSERT_EQ(found.size(), count);
     for (std::size_t i = 0; i < count; ++i) {

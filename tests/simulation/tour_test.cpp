@@ -53,7 +53,7 @@ std::vector<Ways> CheckedWays(const Building& building, const Tour& tour) {
 
 TEST(Tour, VisitsEveryCorridorOfEveryFloorAndComesBack) {
   for (const std::string& name : BuildingNames()) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
       const Building building = *NamedBuilding(name, seed);
       const Tour tour = PlanTour(building, {seed, 0.0, {}});
       const std::vector<Ways> driven = CheckedWays(building, tour);
@@ -142,7 +142,7 @@ TEST(Tour, AnotherOneStartsElsewhereOnAnotherFloor) {
     const UsualTour usual = OtherTour(building, 1, 1, {});
     EXPECT_EQ(usual.start_floor, building.usual_tour.start_floor);
     EXPECT_EQ(usual.visits, building.usual_tour.visits);
-    for (const std::uint64_t number : {2, 3, 4}) {
+    for (const std::uint64_t number : {2U, 3U, 4U}) {
       const UsualTour other = OtherTour(building, 1, number, {});
       EXPECT_TRUE(building.floors.size() == 1 || other.start_floor != usual.start_floor) << name;
       const auto last = static_cast<std::size_t>(building.floors.size() - 1);
