@@ -44,7 +44,10 @@ class SyntheticDrive {
   void Roam(double duration) {
     const double end = state_.stamp + duration;
     while (state_.stamp < end) {
-      Move(Uniform(3.0, 12.0), 0.6, Uniform(-0.3, 0.3));
+      // Drawn one after the other: compilers differ in which argument they work out first.
+      const double turning = Uniform(-0.3, 0.3);
+      const double seconds = Uniform(3.0, 12.0);
+      Move(seconds, 0.6, turning);
       if (Uniform(0.0, 1.0) < 0.2) Move(Uniform(1.0, 25.0), 0.0, 0.0);
     }
   }
