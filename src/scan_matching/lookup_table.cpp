@@ -205,8 +205,9 @@ void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
   const double y_in_cells = y * cells_per_m_;
   const TableCell cell{CellOf(x_in_cells), CellOf(y_in_cells)};
   const auto phase = [](double in_cells, std::int32_t index) {
-    return std::clamp(static_cast<int>((in_cells - index) * BlurKernels::kPhases), 0,
-                      BlurKernels::kPhases - 1);
+    // Far outside given bounds the index is that of a border, and the difference no int.
+    return static_cast<int>(
+        std::clamp((in_cells - index) * BlurKernels::kPhases, 0.0, BlurKernels::kPhases - 1.0));
   };
   const std::uint8_t* kernel = kernels.Rows(phase(x_in_cells, cell.x), phase(y_in_cells, cell.y));
   const int radius = kernels.radius();
