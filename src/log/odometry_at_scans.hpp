@@ -25,10 +25,11 @@ class OdometryAtScans {
 
  private:
   bool Complete(LaserScan* scan);
+  void Forget(double stamp);
 
   std::deque<std::pair<Observation, std::size_t>> waiting_;
   std::size_t scans_waiting_ = 0;
-  std::deque<OdometryReading> readings_;  ///< the last before the first waiting scan, and all after
+  std::deque<OdometryReading> readings_;  ///< from a little before the first waiting scan on
   double newest_ = 0.0;                   ///< s
   bool finished_ = false;
 };
