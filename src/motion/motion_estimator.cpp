@@ -11,6 +11,7 @@
 #include "gyro_bias.hpp"
 #include "scan_odometry.hpp"
 #include "straightened_scan.hpp"
+#include "unheard_speed.hpp"
 #include "wheel_noise.hpp"
 
 namespace masked_mapper {
@@ -33,7 +34,10 @@ class MotionEstimator::Impl {
 
   void Observe(const OdometryReading& reading);
   void Observe(const LaserScan& scan, bool must_match, const FacedPoints* points = nullptr);
-  void StartNode() { T_node_robot_ = UncertainPose2{}; }
+  void StartNode() {
+    T_node_robot_ = UncertainPose2{};
+    unheard_speed_.StartWay();
+  }
   void EnterTransit();
   void LeaveTransit();
 
@@ -44,8 +48,8 @@ class MotionEstimator::Impl {
   template <class Archive>
   void Serialize(Archive& archive) {
     archive(wheels_, gyro_bias_, scan_odometry_, wheel_noise_, last_scan_stamp_, last_step_,
-            last_step_s_, advance_m_, in_transit_, was_heard_, is_heard_, T_odom_robot_,
-            T_node_robot_);
+            last_step_s_, unheard_speed_, advance_m_, in_transit_, was_heard_, is_heard_,
+            T_odom_robot_, T_node_robot_);
   }
 
  private:
@@ -64,6 +68,7 @@ class MotionEstimator::Impl {
   std::optional<double> last_scan_stamp_;
   UncertainPose2 last_step_;
   double last_step_s_ = 0.0;
+  UnheardSpeed unheard_speed_;
   double advance_m_ = 0.0;   ///< by scans since the wheels rested; below 0 the robot backs
   bool in_transit_ = false;  ///< since the scene was last begun anew
   bool was_heard_ = false;   ///< the wheels, up to the scan before
@@ -146,6 +151,7 @@ void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match,
       step.mean.theta = WrapAngle(step.mean.theta - gyro_bias_.rate() * elapsed);
     }
     const Pose2 by_wheels = step.mean;
+    const Eigen::Matrix3d guess_covariance = step.covariance;
     // Scans stopped and the robot went on: what it sees now has little to do with the local map,
     // and a match would only seem to be one. Without a gap it is the wheels that leapt. A robot
     // that rides goes on without a step.
@@ -155,9 +161,16 @@ void MotionEstimator::Impl::Observe(const LaserScan& scan, bool must_match,
         (has_wheels && (std::hypot(by_wheels.x, by_wheels.y) > options_.longest_step_m ||
                         std::abs(by_wheels.theta) > DegToRad(options_.longest_turn_deg)));
     if (elapsed > kGap && went_on) RestartScans();
-    step = scan_odometry_.Observe(scan, step, must_match, points);
+    step = scan_odometry_.Observe(scan, step, must_match, points, !has_wheels);
     if (has_turns) LearnWheelNoise(by_wheels, step.mean);
     NoteAdvance(wheel_travel_m, step.mean.x);
+    if (has_wheels) {
+      unheard_speed_.Hear(step, elapsed);
+    } else if (elapsed > 0.0) {
+      const UnheardSpeed::Guess guess{guess_covariance(0, 0),
+                                      options_.wheelless.sigma_speed_m_per_s * elapsed};
+      step.covariance = unheard_speed_.Observe(step, guess, scan_odometry_.seen_of_step(), elapsed);
+    }
   }
   last_step_s_ = elapsed;
   last_scan_stamp_ = scan.stamp;

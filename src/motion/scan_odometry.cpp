@@ -119,14 +119,16 @@ Alignment ScanOdometry::AlignUnlessOverruled(const FacedPoints& points, const Po
 // The stages of a scan: Predict by the wheels, Match against the local map, Believe the match or
 // not, Fuse it with the wheels, and KeepMap.
 UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
-                                     bool must_match, const FacedPoints* points) {
+                                     bool must_match, const FacedPoints* points, bool tells_alone) {
   View view(scan, reach_m_, points);
+  seen_of_step_.setZero();
   if (!maps_.current) {
     Begin(view, T_last_now.mean);
     return T_last_now;
   }
   const Pose2 T_map_last = path_.T_map_robot;
   const bool is_at_rest = Predict(T_last_now);
+  if (tells_alone && !view.SeesAll() && IsSameSceneAsAWhole(view)) view.SeeAll();
   if (is_at_rest && !must_match) {
     if (NeedsNoMatch()) {
       if (IsAnotherScene(view)) {
@@ -142,9 +144,12 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   const Prediction predicted = PriorOf(is_at_rest);
   const Alignment aligned = AlignUnlessOverruled(view.Points(), path_.T_map_robot, predicted.prior);
   inlier_share_ = aligned.inlier_share;
-  const bool is_believed = Believe(aligned, predicted, must_match);
+  const bool is_believed = Believe(view, aligned, predicted, must_match);
   UncertainPose2 step =
       is_believed ? Fuse(aligned, predicted, T_map_last) : GoOnByWheels(T_last_now.mean, predicted);
+  if (is_believed && tells_alone) {
+    seen_of_step_ = SeenOfStep(view, aligned, predicted, T_map_last);
+  }
   lost_ = is_believed ? 0 : lost_ + 1;
   path_.T_map_matched = path_.T_map_robot;
   path_.T_matched_robot = UncertainPose2{};
@@ -203,6 +208,12 @@ bool ScanOdometry::Predict(const UncertainPose2& T_last_now) {
   return is_at_rest;
 }
 
+// In a cab that is also what is near. On stairs, whose walls are blank, what is farther off tells
+// of the way where no wheels do.
+bool ScanOdometry::IsSameSceneAsAWhole(View& view) const {
+  return maps_.current->Agreement(view.AllPoints(), path_.T_map_robot, kSceneSigma) >= kSameScene;
+}
+
 // Scans of a robot at rest err each on its own: a few more settle what a poor view left open.
 bool ScanOdometry::NeedsNoMatch() const {
   return std::sqrt(path_.heading_variance) < DegToRad(options_.settled_deg) ||
@@ -230,12 +241,12 @@ ScanOdometry::Prediction ScanOdometry::PriorOf(bool is_at_rest) const {
 // has some points that agree, but seldom half of them. Near walls alone come closer to it, so they
 // also have to lie where the wheels put the robot. Wheels are no better judge than that: they slip,
 // and lag behind the scans of a robot that turns.
-bool ScanOdometry::Believe(const Alignment& aligned, const Prediction& predicted,
+bool ScanOdometry::Believe(const View& view, const Alignment& aligned, const Prediction& predicted,
                            bool must_match) const {
   if (suspected_m_ == 0.0 && !must_match) {
     return aligned.inlier_share >= options_.lost_inlier_share;
   }
-  const bool sees_all = std::isinf(reach_m_) && !predicted.is_at_rest;
+  const bool sees_all = view.SeesAll() && !predicted.is_at_rest;
   if (sees_all || aligned.inlier_share >= kSameScene) {
     return aligned.inlier_share >= options_.min_inlier_share;
   }
@@ -249,26 +260,53 @@ bool ScanOdometry::IsAnotherScene(View& view) const {
                                                         kSceneSigma) < options_.min_inlier_share;
 }
 
+namespace {
+
+/// From robot-to-map rotation to one of covariances in map into the frame of a robot.
+Eigen::Matrix2d RotationTo(const Pose2& T_map_robot) {
+  const double c = std::cos(T_map_robot.theta);
+  const double s = std::sin(T_map_robot.theta);
+  Eigen::Matrix2d rotation;
+  rotation << c, s, -s, c;
+  return rotation;
+}
+
+}  // namespace
+
 // Scans against one map err alike: a short step is worth its share of an alignment's covariance,
 // and all of it only over the way on which the map itself has become another.
 UncertainPose2 ScanOdometry::Fuse(const Alignment& aligned, const Prediction& predicted,
                                   const Pose2& T_map_last) {
   heading_sigma_rad_ = 1.0 / std::sqrt(std::max(aligned.information(2, 2), 1e-12));
   path_.heading_variance = (aligned.information + predicted.prior).inverse()(2, 2);
-  const double share =
-      std::min(1.0, predicted.travelled_m / options_.decorrelation_distance_m +
-                        predicted.turned_rad / DegToRad(options_.decorrelation_angle_deg));
   const Eigen::Matrix3d covariance_in_map =
-      (aligned.information / std::max(share, 1e-3) + FlooredInverse(predicted.motion_in_map))
+      (aligned.information / ShareOf(predicted) + FlooredInverse(predicted.motion_in_map))
           .inverse();
   path_.T_map_robot = aligned.T_map_robot;
   path_.last_step = Between(path_.T_map_matched, path_.T_map_robot);
-  const double c = std::cos(T_map_last.theta);
-  const double s = std::sin(T_map_last.theta);
-  Eigen::Matrix3d rotation;
-  rotation << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  rotation.topLeftCorner<2, 2>() = RotationTo(T_map_last);
   return {Between(T_map_last, path_.T_map_robot),
           rotation * covariance_in_map * rotation.transpose()};
+}
+
+double ScanOdometry::ShareOf(const Prediction& predicted) const {
+  const double share = predicted.travelled_m / options_.decorrelation_distance_m +
+                       predicted.turned_rad / DegToRad(options_.decorrelation_angle_deg);
+  return std::clamp(share, 1e-3, 1.0);
+}
+
+Eigen::Matrix2d ScanOdometry::SeenOfStep(View& view, const Alignment& aligned,
+                                         const Prediction& predicted,
+                                         const Pose2& T_map_last) const {
+  const Eigen::Matrix3d& all = aligned.information;
+  Eigen::Matrix2d seen = all.topLeftCorner<2, 2>() -
+                         maps_.current->InformationOfNoise(view.Points(), aligned.T_map_robot);
+  if (all(2, 2) > 0.0) {
+    seen -= all.topRightCorner<2, 1>() * all.bottomLeftCorner<1, 2>() / all(2, 2);
+  }
+  const Eigen::Matrix2d rotation = RotationTo(T_map_last);
+  return rotation * seen * rotation.transpose() / ShareOf(predicted);
 }
 
 UncertainPose2 ScanOdometry::GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted) {

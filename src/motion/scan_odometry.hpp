@@ -22,8 +22,10 @@ class ScanOdometry {
   /// the wheels say it was; without wheels a guess with a covariance to match.
   /// `must_match`: match this scan however little the robot moved, since what is not corrected now
   /// never will be. `points`: of the whole scan, where somebody has made them already.
+  /// `tells_alone`: no wheels do, and seen_of_step() will be asked.
   UncertainPose2 Observe(const LaserScan& scan, const UncertainPose2& T_last_now,
-                         bool must_match = false, const FacedPoints* points = nullptr);
+                         bool must_match = false, const FacedPoints* points = nullptr,
+                         bool tells_alone = false);
 
   /// The robot is somewhere else altogether: forget the local maps, go on from here, and look as
   /// far as there is to see.
@@ -38,6 +40,10 @@ class ScanOdometry {
   /// Sigma of the heading of the last observed scan against the local map by its points alone,
   /// radians; infinite if it was not matched.
   double heading_sigma_rad() const { return heading_sigma_rad_; }
+
+  /// Information on (x, y) of the last step, in the frame that it begins in, that is the scan's
+  /// alone and no noise of walls; zero if it was not matched. Known where `tells_alone` was asked.
+  const Eigen::Matrix2d& seen_of_step() const { return seen_of_step_; }
 
   /// Share of the last matched scan that agreed with the local map, 0-1.
   double inlier_share() const { return inlier_share_; }
@@ -85,6 +91,8 @@ class ScanOdometry {
     /// Where the points of a map end, they would hold back a robot that moves on: it gets more.
     const FacedPoints& MapPoints();
     const FacedPoints& AllPoints();
+    bool SeesAll() const { return std::isinf(reach_m_); }
+    void SeeAll() { reach_m_ = std::numeric_limits<double>::infinity(); }
 
    private:
     const FacedPoints& Within(double reach_m, std::optional<FacedPoints>* points);
@@ -110,9 +118,14 @@ class ScanOdometry {
   Prediction PriorOf(bool is_at_rest) const;
   bool NeedsNoMatch() const;
   bool IsAnotherScene(View& view) const;
-  bool Believe(const Alignment& aligned, const Prediction& predicted, bool must_match) const;
+  bool IsSameSceneAsAWhole(View& view) const;
+  bool Believe(const View& view, const Alignment& aligned, const Prediction& predicted,
+               bool must_match) const;
   UncertainPose2 Fuse(const Alignment& aligned, const Prediction& predicted,
                       const Pose2& T_map_last);
+  double ShareOf(const Prediction& predicted) const;
+  Eigen::Matrix2d SeenOfStep(View& view, const Alignment& aligned, const Prediction& predicted,
+                             const Pose2& T_map_last) const;
   UncertainPose2 GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted);
   void BeginAnew(View& view);
   void KeepMap(View& view);
@@ -132,6 +145,7 @@ class ScanOdometry {
   int lost_ = 0;              ///< scans in a row that were not believed
   double heading_sigma_rad_ = std::numeric_limits<double>::infinity();
   double inlier_share_ = 1.0;
+  Eigen::Matrix2d seen_of_step_ = Eigen::Matrix2d::Zero();
 };
 
 }  // namespace masked_mapper

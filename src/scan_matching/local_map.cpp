@@ -29,6 +29,7 @@ class LocalMap::Impl {
                       const Eigen::Matrix3d& prior_information) const;
   double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
+  Eigen::Matrix2d InformationOfNoise(const FacedPoints& points, const Pose2& T_map_robot) const;
   std::size_t scans() const { return scans_; }
 
   /// What is known of a cell's surroundings follows from its points.
@@ -76,6 +77,7 @@ class LocalMap::Impl {
     float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
     float normal_x = 0.0F, normal_y = 0.0F;  ///< direction of the smaller variance
     float small = 0.0F, large = 0.0F;        ///< variances, m^2
+    float count = 0.0F;                      ///< of points
     bool is_line = false;
     bool is_known = false;
   };
@@ -258,6 +260,7 @@ void LocalMap::Impl::Describe(const Moments& sum, Cell cell, Distribution& d) co
   d.normal_y = static_cast<float>(std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)));
   d.small = static_cast<float>(small);
   d.large = static_cast<float>(large);
+  d.count = static_cast<float>(sum.count);
   // Three points at the least, and spread over more than one cell: else a line is a guess.
   d.is_line = sum.count >= 3.0 && small < options_.line_ratio * large &&
               large > Square(0.5 * options_.cell_m);
@@ -360,6 +363,37 @@ double LocalMap::Impl::Step(const FacedPoints& points, const std::vector<std::ui
   return inliers;
 }
 
+// A line through n points with variances s across and l along it is wrong in direction by
+// s / (n l) rad^2; as much of a point's information lies along it. Where a place is no line, a wall
+// that is seen from afar may be all that it is, and what two points seem to tell of the way along
+// it is where beams happened to fall.
+Eigen::Matrix2d LocalMap::Impl::InformationOfNoise(const FacedPoints& points,
+                                                   const Pose2& T_map_robot) const {
+  const double noise = Square(options_.point_sigma_m);
+  const double outlier = 1.0 / Square(options_.outlier_sigmas);
+  const std::vector<std::uint8_t> sides = SidesOf(points, T_map_robot.theta);
+  Eigen::Matrix2d of_noise = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d point = T_map_robot * Eigen::Vector2d(points.x[i], points.y[i]);
+    Cell cell;
+    if (!FindCell(point.x(), point.y(), &cell)) continue;
+    const std::int32_t slot = slots_.SlotOf(cell);
+    if (slot < 0) continue;
+    const Distribution& d = Seen(static_cast<std::size_t>(slot), sides[i]);
+    if (!d.is_known) continue;
+    const Eigen::Vector2d error = point - Eigen::Vector2d(d.mean_x, d.mean_y);
+    const Eigen::Vector2d tangent(-d.normal_y, d.normal_x);
+    const double w_across = 1.0 / (d.small + noise);
+    const double w_along = d.is_line ? 0.0 : 1.0 / (d.large + noise);
+    const double chi2 = w_across * Square(Eigen::Vector2d(d.normal_x, d.normal_y).dot(error)) +
+                        w_along * Square(tangent.dot(error));
+    const double share_of_noise =
+        d.is_line ? w_across * d.small / (d.count * d.large) : w_along / (d.count - 1.0);
+    of_noise += share_of_noise / Square(1.0 + chi2 * outlier) * tangent * tangent.transpose();
+  }
+  return of_noise / options_.covariance_inflation;
+}
+
 double LocalMap::Impl::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                                  double sigma_m) const {
   if (points_in_robot.empty()) return 0.0;
@@ -449,6 +483,11 @@ Alignment LocalMap::AlignHeld(const FacedPoints& points_in_robot, const Pose2& T
 double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                            double sigma_m) const {
   return impl_->Agreement(points_in_robot, T_map_robot, sigma_m);
+}
+
+Eigen::Matrix2d LocalMap::InformationOfNoise(const FacedPoints& points_in_robot,
+                                             const Pose2& T_map_robot) const {
+  return impl_->InformationOfNoise(points_in_robot, T_map_robot);
 }
 
 std::size_t LocalMap::scans() const { return impl_->scans(); }

@@ -39,6 +39,28 @@ TEST(LocalMap, RecoversKnownPosesFromDisturbedGuesses) {
   EXPECT_LT(worst_deg, 0.3) << "deg";
 }
 
+// Over many corridors what seems to be known of the way along one is noise, and told as such.
+TEST(LocalMap, TellsWhatIsNoiseOfTheWayAlongABlankCorridor) {
+  const BoxScene corridor = BlankCorridor();
+  Eigen::Vector2d known = Eigen::Vector2d::Zero();
+  Eigen::Vector2d noise = Eigen::Vector2d::Zero();
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    LocalMap map({}, {0.0, 0.0});
+    for (int i = 0; i < 10; ++i) {
+      const Pose2 pose{0.15 * i, 0.1, 0.02};
+      map.Add(*PointsInRobot(corridor.Scan(pose, 361, 270.0, &random)), pose);
+    }
+    const ScanPoints::ConstPtr points =
+        PointsInRobot(corridor.Scan({1.6, 0.15, 0.0}, 361, 270.0, &random));
+    const Alignment aligned = map.Align(*points, {1.6, 0.15, 0.0}, Eigen::Matrix3d::Identity());
+    known += aligned.information.diagonal().head<2>();
+    noise += map.InformationOfNoise(*points, aligned.T_map_robot).diagonal();
+  }
+  EXPECT_NEAR(noise.x() / known.x(), 1.0, 0.4) << "along";
+  EXPECT_LT(noise.y() / known.y(), 0.01) << "across";
+}
+
 TEST(LocalMap, BlankCorridorSaysNothingOfTheWayAlongIt) {
   const BoxScene corridor = BlankCorridor();
   std::mt19937 random(5);

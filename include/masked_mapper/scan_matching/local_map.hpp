@@ -83,6 +83,11 @@ class LocalMap {
   Alignment AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                       const Eigen::Matrix3d& prior_information) const;
 
+  /// Of an alignment's information of (x, y), in map: what the noise of the walls' directions makes
+  /// up. Walls that are known by few points seem to tell a little of the way along them, too.
+  Eigen::Matrix2d InformationOfNoise(const FacedPoints& points_in_robot,
+                                     const Pose2& T_map_robot) const;
+
   /// Share of the points that agree with the map at a pose, 0-1: a cheap score to compare guesses.
   double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
