@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t kCheckpointApplicationId = 0x4d6d636b;  // "Mmck"
 /// To be raised whenever the state of anything changes its shape. A checkpoint lives for hours and
 /// is not upgraded.
-constexpr std::int64_t kCheckpointVersion = 10;
+constexpr std::int64_t kCheckpointVersion = 11;
 
 /// A checkpoint may take this share of the time to the next one.
 constexpr double kShare = 0.03;
