@@ -45,7 +45,8 @@ std::optional<std::pair<Observation, std::size_t>> OdometryAtScans::Next() {
 
 // Of what came before, a scan needs the last, and how the robot went up to there.
 void OdometryAtScans::Forget(double stamp) {
-  while (readings_.size() > 1 && readings_[1].stamp <= stamp - kLongestHold) readings_.pop_front();
+  const double needed = stamp - 2.0 * kLongestHold;
+  while (readings_.size() > 1 && readings_[1].stamp <= needed) readings_.pop_front();
 }
 
 /// False while the odometry behind the scan may still come.

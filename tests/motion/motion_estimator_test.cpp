@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "scan_matching/box_scene.hpp"
 
 namespace masked_mapper {
@@ -158,6 +160,30 @@ TEST(MotionEstimator, AfterAGapOfScansTheWheelsAreBelieved) {
   }
   EXPECT_NEAR(motion.T_odom_robot().x, x - 2.05, 0.05);
   EXPECT_NEAR(motion.T_odom_robot().y, 0.0, 0.05);
+}
+
+// Stairs: blank walls at hand, and a landing at each end that is farther off than a cab's walls.
+TEST(MotionEstimator, OnStairsWithoutWheelsTheLandingsTellTheWay) {
+  BoxScene stairs;
+  stairs.walls.push_back({{-4.0, -0.9}, {8.0, -0.9}});
+  stairs.walls.push_back({{-4.0, 0.9}, {8.0, 0.9}});
+  stairs.walls.push_back({{-4.0, -0.9}, {-4.0, 0.9}});
+  stairs.walls.push_back({{8.0, -0.9}, {8.0, 0.9}});
+  MotionOptions options;
+  options.source = MotionSource::kScans;
+  MotionEstimator motion(options);
+  std::mt19937 random(3);
+  Pose2 truth;
+  for (int i = 0; i < 90; ++i) {
+    if (i == 10) motion.EnterTransit();
+    // At a walk, slowly, at rest for a while, and on.
+    const double step = i < 20 ? 0.1 : i < 40 ? 0.03 : i < 60 ? 0.0 : 0.05;
+    if (i > 0) truth.x += step;
+    LaserScan scan = stairs.Scan(truth, 361, 270.0, &random);
+    scan.stamp = 0.2 * i;
+    motion.Observe(scan);
+  }
+  EXPECT_LT(Distance(motion.T_odom_robot(), truth), 0.05) << "m of " << truth.x;
 }
 
 }  // namespace
