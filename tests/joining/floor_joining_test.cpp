@@ -31,7 +31,9 @@ FloorTimeline ThreeVisits(const RingDrive& drive) {
 }
 
 BuildingMap MapOf(const std::vector<LaserScan>& scans, const FloorTimeline& floors) {
-  MaskedMapper mapper("openings", {}, floors);
+  MappingOptions options;
+  options.motion.source = MotionSource::kFused;
+  MaskedMapper mapper("openings", options, floors);
   for (const LaserScan& scan : scans) mapper.Observe(scan);
   return mapper.Finish();
 }

@@ -57,7 +57,8 @@ TEST(TieVisits, WhatStayedOpenIsTiedAndRight) {
 
 TEST(TieVisits, OneVisitStaysAsItIs) {
   const RingDrive drive(1.1, 0.2);
-  const MappingOptions options;
+  MappingOptions options;
+  options.motion.source = MotionSource::kFused;
   const FloorTimeline one_floor;
   MaskedMapper mapper("openings", options, one_floor);
   for (const LaserScan& scan : drive.scans) mapper.Observe(scan);
