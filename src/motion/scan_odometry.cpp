@@ -47,6 +47,15 @@ double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& ex
   return error.dot(covariance.inverse() * error);
 }
 
+/// Turns what is told in map into the robot's frame.
+Eigen::Matrix2d RotationTo(const Pose2& T_map_robot) {
+  const double c = std::cos(T_map_robot.theta);
+  const double s = std::sin(T_map_robot.theta);
+  Eigen::Matrix2d rotation;
+  rotation << c, s, -s, c;
+  return rotation;
+}
+
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }
 
 }  // namespace
@@ -259,19 +268,6 @@ bool ScanOdometry::IsAnotherScene(View& view) const {
   return suspected_m_ > 0.0 && maps_.current->Agreement(view.Points(), path_.T_map_robot,
                                                         kSceneSigma) < options_.min_inlier_share;
 }
-
-namespace {
-
-/// From robot-to-map rotation to one of covariances in map into the frame of a robot.
-Eigen::Matrix2d RotationTo(const Pose2& T_map_robot) {
-  const double c = std::cos(T_map_robot.theta);
-  const double s = std::sin(T_map_robot.theta);
-  Eigen::Matrix2d rotation;
-  rotation << c, s, -s, c;
-  return rotation;
-}
-
-}  // namespace
 
 // Scans against one map err alike: a short step is worth its share of an alignment's covariance,
 // and all of it only over the way on which the map itself has become another.
