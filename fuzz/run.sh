@@ -15,7 +15,7 @@ targets=("${@:2}")
 [[ ${#targets[@]} -gt 0 ]] || mapfile -t targets < <(cd fuzz/corpus && ls -d */ | tr -d /)
 
 command -v clang++ >/dev/null ||
-  { echo "run.sh: needs the Debian packages clang and libclang-rt-14-dev" >&2; exit 1; }
+  { echo "run.sh: needs the Debian packages clang and libclang-rt-dev" >&2; exit 1; }
 
 cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
   -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DMASKED_MAPPER_FUZZ=ON \

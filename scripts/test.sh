@@ -45,7 +45,7 @@ part_tidy() {
 
 # By clang, which also sees numbers that fit no integer; so it builds with both compilers.
 part_sanitize() {
-  scripts/install_packages.sh clang
+  scripts/install_packages.sh clang libclang-rt-dev
   export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
   build_and_test sanitize
 }
