@@ -27,7 +27,7 @@ class Linker {
     if (version_ <= 2) NameClosures(edges);
     PoseGraph linked;
     for (const Floor& floor : map_.graph.floors()) linked.AddFloor(floor);
-    for (Node& node : nodes) linked.AddNode(std::move(node));
+    for (const Node& node : nodes) linked.AddNode(node);
     for (Edge& edge : edges) {
       if (edge.closure >= 0 && !IsOf(edge)) Malformed("edges", "an edge of another closure");
       linked.AddEdge(std::move(edge));

@@ -35,7 +35,7 @@ void Straighten(const std::function<Pose2(double)>& motion, CloudPoints* points_
   }
   for (CloudPoint& point : *points_in_robot) {
     const double share = (static_cast<double>(point.time) - begin) / span;
-    const auto i = static_cast<std::size_t>(share * kStepsOfSweep + 0.5);
+    const auto i = static_cast<std::size_t>(std::lround(share * kStepsOfSweep));
     const Eigen::Vector2f moved =
         rotations[i] * point.position.head<2>() + steps[i].Translation().cast<float>();
     point.position.head<2>() = moved;
