@@ -28,6 +28,6 @@ struct MapArguments {
 };
 
 /// The exit code of a run that did not throw.
-int RunMap(const MapArguments& arguments);
+int RunMap(const MapArguments& asked);
 
 }  // namespace masked_mapper

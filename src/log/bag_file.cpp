@@ -48,9 +48,9 @@ class BagFile final : public RosBag {
   std::optional<BagMessage> Next() override {
     while (true) {
       if (chunk_position_ < chunk_.size()) {
-        if (const std::optional<BagMessage> message = NextInChunk()) return message;
+        if (std::optional<BagMessage> message = NextInChunk()) return message;
       } else if (!at_end_) {
-        if (const std::optional<BagMessage> message = NextInFile()) return message;
+        if (std::optional<BagMessage> message = NextInFile()) return message;
       } else {
         return std::nullopt;
       }
