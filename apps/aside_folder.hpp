@@ -14,7 +14,7 @@ namespace masked_mapper {
 /// Where the file that a user named is to be written, absolute. Throws InputError where it is no
 /// name of a file, or something else stands there; a file is replaced.
 inline std::filesystem::path FileToWrite(const std::string& name) {
-  const std::filesystem::path file = std::filesystem::absolute(name);
+  std::filesystem::path file = std::filesystem::absolute(name);
   if (!file.has_filename()) throw InputError(name + ": not the name of a file");
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
     throw InputError(name + " exists and is not a file");

@@ -25,7 +25,7 @@ void RequireNear(const Eigen::Vector2d& point, const EditLine& edit) {
 }
 
 Eigen::Vector2d PointOf(const std::vector<double>& numbers, const EditLine& edit) {
-  const Eigen::Vector2d point(numbers[0], numbers[1]);
+  Eigen::Vector2d point(numbers[0], numbers[1]);
   RequireNear(point, edit);
   return point;
 }

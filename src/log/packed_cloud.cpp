@@ -114,7 +114,7 @@ struct Sum {
   unsigned char Shade(float greatest) const {
     if (!(greatest > 0.0F)) return 0;
     const float share = std::min(1.0F, intensity / count / greatest);
-    return static_cast<unsigned char>(kFullIntensity * share + 0.5F);
+    return static_cast<unsigned char>(std::lround(kFullIntensity * share));
   }
 };
 

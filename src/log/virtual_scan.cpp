@@ -57,7 +57,10 @@ struct Rays {
 constexpr std::uint32_t kNoBeam = std::numeric_limits<std::uint32_t>::max();
 
 /// The beam nearest to a place that is counted in beams; the one behind the last is the first.
-std::uint32_t Nearest(float in_beams) { return static_cast<std::uint32_t>(in_beams + 0.5F); }
+/// Asked for every point of every cloud, and of no negative number: a call of lround would be felt.
+std::uint32_t Nearest(float in_beams) {
+  return static_cast<std::uint32_t>(in_beams + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
+}
 
 std::uint32_t BeamOf(float turn, std::size_t beams) {
   const auto all = static_cast<std::uint32_t>(beams);

@@ -160,7 +160,7 @@ class Reader {
       } else {
         node.scan = TakeIdOrNone(rows, "nodes", "the scan");
       }
-      graph.AddNode(std::move(node));
+      graph.AddNode(node);
     }
   }
 

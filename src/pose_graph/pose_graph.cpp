@@ -23,7 +23,7 @@ FloorId PoseGraph::AddFloor(Floor floor) {
 
 NodeId PoseGraph::AddNode(Node node) {
   Check(Exists(floors_, node.floor), "a node's floor exists");
-  nodes_.push_back(std::move(node));
+  nodes_.push_back(node);
   edges_of_.emplace_back();
   return static_cast<NodeId>(nodes_.size() - 1);
 }
