@@ -57,7 +57,7 @@ std::optional<UncertainPose2> PoseTracker::Match(const LaserScan& scan, FloorId 
   std::vector<NodeId> nodes = map_.NodesNear(floor, T_world_robot.mean.Translation(), kReach);
   nodes.resize(std::min(nodes.size(), kMostNodes));
   for (const NodeId node : nodes) {
-    const std::optional<UncertainPose2> match = MatchWith(node, points_in_robot, T_world_robot);
+    std::optional<UncertainPose2> match = MatchWith(node, points_in_robot, T_world_robot);
     if (!match) continue;
     if (GoTogether(T_world_robot, *match)) return Weighed(T_world_robot, *match);
     // Motion was surer than it should have been (wheels slip, and walls are said to be), or the

@@ -101,7 +101,7 @@ std::string PointBytes(const RosPointCloud& cloud, CloudLayout layout,
     std::memcpy(begin, point.position.data(), 3 * sizeof(float));
     std::memcpy(begin + written.fields[3].offset, &point.intensity, sizeof(float));
     const std::string time = TimeBytes(layout, cloud.header.stamp, point.time);
-    std::memcpy(begin + written.fields[4].offset, time.data(), time.size());
+    std::copy(time.begin(), time.end(), begin + written.fields[4].offset);
   }
   return data;
 }
