@@ -2,6 +2,7 @@
 #include "scan_odometry.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -49,11 +50,7 @@ double Chi2(const Pose2& expected, const Pose2& found, const Eigen::Matrix3d& ex
 
 /// Turns what is told in map into the robot's frame.
 Eigen::Matrix2d RotationTo(const Pose2& T_map_robot) {
-  const double c = std::cos(T_map_robot.theta);
-  const double s = std::sin(T_map_robot.theta);
-  Eigen::Matrix2d rotation;
-  rotation << c, s, -s, c;
-  return rotation;
+  return Eigen::Rotation2Dd(-T_map_robot.theta).toRotationMatrix();
 }
 
 double Turn(const Pose2& a, const Pose2& b) { return std::abs(WrapAngle(b.theta - a.theta)); }

@@ -2,6 +2,7 @@
 #include "unheard_speed.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -40,10 +41,7 @@ Eigen::Matrix3d UnheardSpeed::Observe(const UncertainPose2& T_last_now, const Gu
   const double lasts = std::sqrt(
       std::max(0.0, 1.0 - guess.variance / std::max(kExact, guess.most_sigma * guess.most_sigma)));
   const double ratio = elapsed_ > 0.0 ? std::min(kMostStretched, elapsed / elapsed_) : 0.0;
-  const double c = std::cos(T_last_now_.theta);
-  const double s = std::sin(T_last_now_.theta);
-  Eigen::Matrix2d R_last_before;
-  R_last_before << c, s, -s, c;
+  const Eigen::Matrix2d R_last_before = Eigen::Rotation2Dd(-T_last_now_.theta).toRotationMatrix();
   const Eigen::Matrix2d goes_on = lasts * ratio * R_last_before;
   const Eigen::Matrix2d expected = goes_on * step_ * goes_on.transpose() +
                                    std::max(kExact, guess.variance) * Eigen::Matrix2d::Identity();
