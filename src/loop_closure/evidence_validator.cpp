@@ -14,30 +14,16 @@ const Closure& ClosureOf(ClosureId id, const std::vector<Closure>& closures) {
   return closures[static_cast<std::size_t>(id)];
 }
 
-constexpr double kHoweverUnsure = std::numeric_limits<double>::infinity();
-
 }  // namespace
 
-void EvidenceValidator::Projection::Look(const PoseGraph& graph, NodeId from, double max_trace) {
-  const bool is_known = from_ == from && max_trace_ == max_trace &&
-                        edges_ == graph.edges().size() && place_.size() == graph.nodes().size();
-  if (is_known) return;
-  for (const ProjectedNode& projected : reached_) {
-    place_[static_cast<std::size_t>(projected.node)] = -1;
-  }
-  place_.resize(graph.nodes().size(), -1);
-  reached_ = DijkstraProjection(graph, from, {max_trace});
-  for (std::size_t i = 0; i < reached_.size(); ++i) {
-    place_[static_cast<std::size_t>(reached_[i].node)] = static_cast<std::int32_t>(i);
-  }
-  from_ = from;
-  max_trace_ = max_trace;
+ProjectionSearch& EvidenceValidator::LastSearch::From(NodeId node, const PoseGraph& graph) {
+  const bool is_known =
+      from_ == node && nodes_ == graph.nodes().size() && edges_ == graph.edges().size();
+  if (!is_known) search_.emplace(graph, node);
+  from_ = node;
+  nodes_ = graph.nodes().size();
   edges_ = graph.edges().size();
-}
-
-const UncertainPose2* EvidenceValidator::Projection::Find(NodeId node) const {
-  const std::int32_t place = place_[static_cast<std::size_t>(node)];
-  return place < 0 ? nullptr : &reached_[static_cast<std::size_t>(place)].T_source_node;
+  return *search_;
 }
 
 std::vector<ClosureId> EvidenceValidator::Judge(const PoseGraph& graph,
@@ -86,11 +72,9 @@ void EvidenceValidator::AskWay(const PoseGraph& graph, ClosureId id,
                                const std::vector<Closure>& closures) {
   const Closure& closure = ClosureOf(id, closures);
   // Without limit: a way that comes back is less sure on its way.
-  around_newer_.Look(graph, closure.newer, kHoweverUnsure);
-  const UncertainPose2* T_newer_older = around_newer_.Find(closure.older);
-  Standing& standing = StandingOf(id);
-  standing.by_way =
-      T_newer_older == nullptr ? 0.0 : LoopEvidence(*T_newer_older * closure.T_older_newer);
+  const ProjectedNode* way = from_newer_.From(closure.newer, graph).Find(closure.older);
+  StandingOf(id).by_way =
+      way == nullptr ? 0.0 : LoopEvidence(way->T_source_node * closure.T_older_newer);
 }
 
 void EvidenceValidator::AskWitnesses(const PoseGraph& graph, ClosureId id,
@@ -98,22 +82,24 @@ void EvidenceValidator::AskWitnesses(const PoseGraph& graph, ClosureId id,
   // A trace (Eq. 2). Witnesses from farther off than the way is unsure say less than the way.
   constexpr double kReach = 2.0;
   const Closure& asked = ClosureOf(id, closures);
-  around_newer_.Look(graph, asked.newer, kHoweverUnsure);
-  const UncertainPose2* way = around_newer_.Find(asked.older);
-  around_older_.Look(graph, asked.older,
-                     std::max(kReach, way == nullptr ? kHoweverUnsure : way->covariance.trace()));
+  ProjectionSearch& from_newer = from_newer_.From(asked.newer, graph);
+  ProjectionSearch& from_older = from_older_.From(asked.older, graph);
+  const ProjectedNode* way = from_newer.Find(asked.older);
+  const double reach = way == nullptr ? kHoweverUnsure : std::max(kReach, way->cost);
   for (const ClosureId other : waiting_) {
     const Closure& witness = ClosureOf(other, closures);
     if (graph.node(witness.older).floor != graph.node(asked.older).floor) continue;
     for (const bool same_way : {true, false}) {
       const NodeId beside_newer = same_way ? witness.newer : witness.older;
       const NodeId beside_older = same_way ? witness.older : witness.newer;
-      const UncertainPose2* from_newer = around_newer_.Find(beside_newer);
-      const UncertainPose2* from_older = around_older_.Find(beside_older);
-      if (from_newer == nullptr || from_older == nullptr) continue;
+      const ProjectedNode* to_older = from_older.Find(beside_older, reach);
+      if (to_older == nullptr) continue;
+      const ProjectedNode* to_newer = from_newer.Find(beside_newer);
+      if (to_newer == nullptr) continue;
       const UncertainPose2 across =
           same_way ? Inverse(witness.T_older_newer) : witness.T_older_newer;
-      const UncertainPose2 loop = *from_newer * across * Inverse(*from_older) * asked.T_older_newer;
+      const UncertainPose2 loop =
+          to_newer->T_source_node * across * Inverse(to_older->T_source_node) * asked.T_older_newer;
       const double nats = LoopEvidence(loop);
       if (nats <= 0.0) continue;
       StandingOf(id).witnesses.push_back({other, nats});

@@ -7,6 +7,8 @@
 // Places and nothing else make witnesses independent. What entered is a way for others.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "masked_mapper/map/closure.hpp"
@@ -65,18 +67,16 @@ class EvidenceValidator {
     }
   };
 
-  // Where nodes lie as seen from one of them; by node, nothing for those beyond reach.
-  class Projection {
+  // The last search from a node, kept for as long as it is of the same node and edges.
+  class LastSearch {
    public:
-    void Look(const PoseGraph& graph, NodeId from, double max_trace);
-    const UncertainPose2* Find(NodeId node) const;
+    ProjectionSearch& From(NodeId node, const PoseGraph& graph);
 
    private:
-    std::vector<ProjectedNode> reached_;
-    std::vector<std::int32_t> place_;  // by node; -1: none
+    std::optional<ProjectionSearch> search_;
     NodeId from_ = -1;
-    double max_trace_ = -1.0;
-    std::size_t edges_ = 0;  // of the graph when it was looked at
+    std::size_t nodes_ = 0;  // of the graph when it was begun
+    std::size_t edges_ = 0;
   };
 
   void AskWay(const PoseGraph& graph, ClosureId id, const std::vector<Closure>& closures);
@@ -89,8 +89,8 @@ class EvidenceValidator {
   std::vector<Standing> standings_;  // of the closures, up to the last that was judged
   std::vector<ClosureId> waiting_;   // judged, and not believed so far; in order
   std::vector<ClosureId> entered_;   // by the last call: what they are a way for is asked again
-  Projection around_newer_;
-  Projection around_older_;
+  LastSearch from_newer_;
+  LastSearch from_older_;
 };
 
 }  // namespace masked_mapper

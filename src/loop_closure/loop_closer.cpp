@@ -217,11 +217,10 @@ Pose2 LoopCloser::Impl::MapBetween(NodeId from, NodeId to) const {
 // From the map, and as sure as the surest way through the graph.
 std::optional<UncertainPose2> LoopCloser::Impl::WayBetween(NodeId from, NodeId to) const {
   constexpr double kMostTrace = 2.0;  // the search ends there: less sure, it vouches for nothing
-  for (const ProjectedNode& projected : DijkstraProjection(map_.graph, from, {kMostTrace})) {
-    if (projected.node != to) continue;
-    return UncertainPose2{MapBetween(from, to), projected.T_source_node.covariance};
-  }
-  return std::nullopt;
+  ProjectionSearch search(map_.graph, from);
+  const ProjectedNode* found = search.Find(to, kMostTrace);
+  if (found == nullptr) return std::nullopt;
+  return UncertainPose2{MapBetween(from, to), found->T_source_node.covariance};
 }
 
 void LoopCloser::Impl::EnterLate(ClosureId id) {

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <set>
@@ -172,11 +174,35 @@ TEST(DijkstraProjection, StopsAtTheLimitAndLeavesOutTheUnreachable) {
   }
   EXPECT_EQ(DijkstraProjection(graph, 0).size(), 5u);
   EXPECT_EQ(DijkstraProjection(graph, 5).size(), 1u);
-  ProjectionLimits limits;
-  limits.max_cost = 2.0;
-  const std::vector<ProjectedNode> near = DijkstraProjection(graph, 0, limits);
-  ASSERT_EQ(near.size(), 3u);
-  EXPECT_NEAR(near.back().T_source_node.mean.x, 2.0, 1e-12) << "m";
+  ProjectionSearch search(graph, 0);
+  EXPECT_EQ(search.Find(3, 2.0), nullptr);
+  ASSERT_NE(search.Find(2, 2.0), nullptr);
+  EXPECT_NEAR(search.Find(2, 2.0)->T_source_node.mean.x, 2.0, 1e-12) << "m";
+  ASSERT_NE(search.Find(3), nullptr);
+  EXPECT_EQ(search.Find(3, 2.0), nullptr) << "though it is settled by now";
+  EXPECT_EQ(search.Find(5), nullptr);
+}
+
+TEST(DijkstraProjection, GoesAsFarAsAskedAndFindsWhatTheWholeOneFinds) {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    const PoseGraph graph = RandomGraph(random, 40, 50, 0.1);
+    const std::vector<ProjectedNode> whole = DijkstraProjection(graph, 3);
+    std::vector<const ProjectedNode*> by_node(graph.nodes().size(), nullptr);
+    for (const ProjectedNode& projected : whole) {
+      by_node[static_cast<std::size_t>(projected.node)] = &projected;
+    }
+    std::vector<NodeId> order(graph.nodes().size());
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), random);
+    ProjectionSearch search(graph, 3);
+    for (const NodeId node : order) {
+      const ProjectedNode* expected = by_node[static_cast<std::size_t>(node)];
+      const ProjectedNode* found = search.Find(node);
+      ASSERT_EQ(found == nullptr, expected == nullptr);
+      if (found != nullptr) ExpectSame(found->T_source_node, expected->T_source_node);
+    }
+  }
 }
 
 TEST(DijkstraProjection, TiesGoToTheLowerId) {

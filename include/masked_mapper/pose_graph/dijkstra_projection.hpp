@@ -5,7 +5,11 @@
 // first (least-trace) composition that reaches it.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <queue>
+#include <utility>
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
@@ -19,14 +23,40 @@ struct ProjectedNode {
   double cost = 0.0;             ///< trace of the covariance, Eq. 2
 };
 
-struct ProjectionLimits {
-  double max_cost =
-      std::numeric_limits<double>::infinity();  ///< trace beyond which nothing follows
+constexpr double kHoweverUnsure = std::numeric_limits<double>::infinity();
+
+/// The projection from one node, which goes on only as far as is asked. The graph must outlive it
+/// and keep its nodes, and its edges while anything is asked.
+class ProjectionSearch {
+ public:
+  ProjectionSearch(const PoseGraph& graph, NodeId source);
+
+  /// Null: beyond reach, or at more than `max_cost` (a trace, Eq. 2). Valid until the next call.
+  const ProjectedNode* Find(NodeId node, double max_cost = kHoweverUnsure);
+  /// Every node within reach, in order of settling: cost, then id.
+  std::vector<ProjectedNode> All() &&;
+
+ private:
+  struct Reached {
+    double cost = std::numeric_limits<double>::infinity();
+    EdgeId by = -1;           // the edge by which `cost` is reached
+    std::size_t parent = 0;   // its other end, a place among the settled ones
+    std::int32_t place = -1;  // among the settled ones; -1: not settled
+  };
+  using Entry = std::pair<double, NodeId>;
+
+  Reached& At(NodeId node);
+  void SettleNext();
+
+  const PoseGraph& graph_;
+  std::vector<std::int32_t> reached_at_;  // by node: a place in `reached_`; -1: none
+  std::vector<Reached> reached_;
+  std::vector<ProjectedNode> settled_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
-/// Nodes reachable from `source` (itself first, with zero covariance), in order of settling: cost,
-/// then id. Crosses floors.
-std::vector<ProjectedNode> DijkstraProjection(const PoseGraph& graph, NodeId source,
-                                              const ProjectionLimits& limits = {});
+/// Nodes reachable from `source` (itself first, with zero covariance), in order of settling.
+/// Crosses floors.
+std::vector<ProjectedNode> DijkstraProjection(const PoseGraph& graph, NodeId source);
 
 }  // namespace masked_mapper
