@@ -44,7 +44,7 @@ struct ExportArguments {
   double voxel_m = 0.05;
   bool keeps_passers_by = false;
   RobotHeights robot;
-  double memory_mib = 1024.0;
+  double memory_mib = 1280.0;
   bool quiet = false;
 };
 

@@ -66,16 +66,24 @@ struct Written {
   std::string remark;
 };
 
-/// Voxels in which one who walks by is a few, and that a wall's noise does not reach through.
-SpaceOccupancyOptions RaysBetweenPoints(const SavedMap& map, const SpaceRequest& request,
-                                        const SpaceExportOptions& points) {
-  constexpr double kPartOfABody = 0.1;  // m
+SpaceOccupancyOptions RaysOf(const SavedMap& map, const SpaceRequest& request) {
+  Options as_mapped = map.origin.options;
+  SettleThreads(as_mapped);
   SpaceOccupancyOptions options;
-  options.votes.resolution_m = std::max(kPartOfABody, map.origin.options.grid.resolution_m);
-  options.max_range_m = points.max_range_m;
-  options.floor = points.floor;
+  options.votes.resolution_m = as_mapped.grid.resolution_m;
+  options.votes.threads = as_mapped.grid.threads;
+  options.max_range_m = as_mapped.grid.max_usable_range_m;
+  options.floor = request.floor;
   options.memory_mib = request.memory_mib;
   if (request.logs.empty()) options.spacing = kSpacingOfKept;
+  return options;
+}
+
+/// Voxels in which one who walks by is a few, and that a wall's noise does not reach through.
+SpaceOccupancyOptions RaysBetweenPoints(const SavedMap& map, const SpaceRequest& request) {
+  constexpr double kPartOfABody = 0.1;  // m
+  SpaceOccupancyOptions options = RaysOf(map, request);
+  options.votes.resolution_m = std::max(kPartOfABody, options.votes.resolution_m);
   return options;
 }
 
@@ -89,7 +97,7 @@ Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::
   options.heights = request.heights;
   SpaceExport space(map.result, options);
   std::optional<SpaceOccupancy> rays;
-  if (!request.keeps_passers_by) rays.emplace(map.result, RaysBetweenPoints(map, request, options));
+  if (!request.keeps_passers_by) rays.emplace(map.result, RaysBetweenPoints(map, request));
   ReadClouds(map, request, "placing clouds", progress, &space, rays ? &*rays : nullptr);
   CheckTaken(request, space.clouds());
   const std::string remark = std::to_string(space.clouds().taken) + " clouds";
@@ -105,13 +113,8 @@ Written WritePoints(const SavedMap& map, const SpaceRequest& request, const fs::
 
 Written WriteOccupancy(const SavedMap& map, const SpaceRequest& request, const fs::path& folder,
                        ProgressBar& progress) {
-  SpaceOccupancyOptions options;
-  options.votes.resolution_m = map.origin.options.grid.resolution_m;
-  options.max_range_m = map.origin.options.grid.max_usable_range_m;
-  options.floor = request.floor;
+  SpaceOccupancyOptions options = RaysOf(map, request);
   options.heights = request.heights;
-  options.memory_mib = request.memory_mib;
-  if (request.logs.empty()) options.spacing = kSpacingOfKept;
   SpaceOccupancy space(map.result, options);
   std::size_t clouds = 0;
   std::size_t passes = 0;

@@ -22,7 +22,7 @@ struct SpaceRequest {
   std::optional<FloorId> floor;   ///< empty: all
   HeightBand heights;             ///< in world
   RobotHeights robot;             ///< of grids
-  double memory_mib = 1024.0;     ///< of voxels that rays pass
+  double memory_mib = 1280.0;     ///< of voxels that rays pass
   bool quiet = false;
 };
 

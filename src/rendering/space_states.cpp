@@ -48,8 +48,7 @@ const SpaceBlock* SpaceStates::BlockAt(const VoxelIndex& at) const {
 }
 
 Cell SpaceStates::At(const VoxelIndex& voxel) const {
-  const SpaceBlock* const block = BlockAt(
-      {voxel[0] >> kSpaceBlockBits, voxel[1] >> kSpaceBlockBits, voxel[2] >> kSpaceBlockBits});
+  const SpaceBlock* const block = BlockAt(BlockOf(voxel));
   return block == nullptr ? Cell::kUnknown : block->cells[PlaceInBlock(voxel)];
 }
 

@@ -13,7 +13,11 @@ std::optional<Eigen::Vector3f> SurfacePatch::Normal(float thickness_m) {
     const auto n = static_cast<float>(count_);
     const Eigen::Vector3f mean = sum_ / n;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-    solver.computeDirect(Eigen::Matrix3f(squares_ / n - mean * mean.transpose()));
+    Eigen::Matrix3f moments;
+    moments << squares_.x(), products_.z(), products_.y(),  //
+        products_.z(), squares_.y(), products_.x(),         //
+        products_.y(), products_.x(), squares_.z();
+    solver.computeDirect(Eigen::Matrix3f(moments / n - mean * mean.transpose()));
     const Eigen::Vector3f& spread = solver.eigenvalues();  // rising
     const float thin = thickness_m * thickness_m;
     const bool is_plane = spread(0) < thin && spread(1) > thin && spread(1) > 4.0F * spread(0);

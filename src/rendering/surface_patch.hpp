@@ -14,7 +14,8 @@ class SurfacePatch {
   void Add(const Eigen::Vector3f& hit) {
     ++count_;
     sum_ += hit;
-    squares_ += hit * hit.transpose();
+    squares_ += hit.cwiseProduct(hit);
+    products_ += Eigen::Vector3f(hit.y() * hit.z(), hit.z() * hit.x(), hit.x() * hit.y());
   }
 
   /// Empty where hits are too few, lie in a line, or on no plane; `thickness_m` is what noise makes
@@ -25,7 +26,8 @@ class SurfacePatch {
   std::uint32_t count_ = 0;
   std::uint32_t counted_ = 0;  ///< when the normal was found
   Eigen::Vector3f sum_ = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares_ = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f squares_ = Eigen::Vector3f::Zero();   ///< of x, y, z
+  Eigen::Vector3f products_ = Eigen::Vector3f::Zero();  ///< of y and z, z and x, x and y
   Eigen::Vector3f normal_ = Eigen::Vector3f::Zero();  ///< zero: none
 };
 

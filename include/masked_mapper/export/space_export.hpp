@@ -49,7 +49,7 @@ struct SpaceOccupancyOptions {
   CloudSpacing spacing{0.3, 20.0};
   std::optional<FloorId> floor;  ///< empty: all
   HeightBand heights;            ///< of the octree, in world
-  double memory_mib = 1024.0;    ///< of votes; floors for which it is too little wait
+  double memory_mib = 1280.0;    ///< of votes; floors for which it is too little wait
 };
 
 /// Above the floor, m: what stands there is in a robot's way.

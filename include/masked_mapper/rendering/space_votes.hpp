@@ -36,6 +36,16 @@ struct SpaceBlock {
   std::array<Cell, kSpaceBlockVoxels> cells{};
 };
 
+/// What == of the arrays is, without a call.
+inline bool IsSame(const VoxelIndex& a, const VoxelIndex& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/// The place of a voxel's block.
+inline VoxelIndex BlockOf(const VoxelIndex& voxel) {
+  return {voxel[0] >> kSpaceBlockBits, voxel[1] >> kSpaceBlockBits, voxel[2] >> kSpaceBlockBits};
+}
+
 /// Where in its block a voxel stands: x changes fastest.
 inline std::size_t PlaceInBlock(const VoxelIndex& voxel) {
   constexpr std::int32_t kMask = kSpaceBlockSide - 1;
@@ -78,7 +88,10 @@ struct SpaceVoteOptions {
   std::uint32_t least_hits = 2;  ///< clouds that must have hit what is occupied
   double occupied_ratio = 0.25;  ///< share of hits among votes from which a voxel is occupied
   std::size_t clouds_ahead = 32;
+  int threads = 1;
 };
+
+class CloudRays;
 
 class SpaceVotes {
  public:
@@ -101,12 +114,16 @@ class SpaceVotes {
  private:
   struct Cloud;
   class Volume;
+  class Casting;
 
   void CastFirst();
+  void TakeVotes();
 
   SpaceVoteOptions options_;
   std::unique_ptr<Volume> volume_;
+  std::unique_ptr<CloudRays> added_;  ///< what was hit by the cloud that is being added
   std::deque<Cloud> waiting_;
+  std::unique_ptr<Casting> casting_;
 };
 
 }  // namespace masked_mapper
