@@ -147,9 +147,7 @@ void MaskedMapper::CloseLoops(NodeId new_node) {
   std::vector<Candidate> candidates;
   {
     const StageTimer timer(result_.seconds.projection);
-    candidates =
-        FindCandidates(result_.graph, new_node, DijkstraProjection(result_.graph, new_node),
-                       options_.closures.candidates);
+    candidates = candidates_.Of(result_.graph, new_node, options_.closures.candidates);
   }
   closer_.Close(new_node, candidates);
 }

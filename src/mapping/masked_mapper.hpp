@@ -68,6 +68,7 @@ class MaskedMapper {
   DriveMotion motion_;
   std::unique_ptr<Mask> mask_;
   BuildingMap result_;
+  CandidateSearch candidates_;
   LoopCloser closer_;  ///< works on result_
 
   Pose2 T_odom_robot_;                    ///< at the scan observed last, as T_node_robot_

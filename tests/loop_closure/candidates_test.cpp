@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 namespace masked_mapper {
 namespace {
@@ -91,6 +93,54 @@ TEST(Candidates, OtherFloorsAndNodesWithoutAScanAreNeverOffered) {
   const auto candidates = FindCandidates(graph, 3, DijkstraProjection(graph, 3), {});
   ASSERT_EQ(candidates.size(), 1u);
   EXPECT_EQ(candidates[0].node, 0);
+}
+
+// A drive round two rooms again and again, on two floors, whose loops close by and by.
+TEST(Candidates, SearchedFromNodeToNodeAreThoseOfTheWholeProjection) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  PoseGraph graph;
+  graph.AddFloor({});
+  graph.AddFloor({});
+  CandidateSearch search;
+  CandidateOptions options;
+  std::size_t found = 0;
+  std::vector<Pose2> truths;
+  for (int i = 0; i < 400; ++i) {
+    const double turn = 0.13 * i;
+    const bool is_far_room = i / 100 % 2 == 1;
+    const Pose2 truth{12.0 * std::cos(turn) + (is_far_room ? 40.0 : 0.0), 8.0 * std::sin(turn),
+                      WrapAngle(turn)};
+    const Pose2 seen = truth * Pose2{0.1 * normal(random), 0.1 * normal(random), 0.0};
+    const NodeId node = AddScanNode(graph, seen, i / 200);
+    truths.push_back(truth);
+    if (node > 0) {
+      const Eigen::Vector3d sigma(0.05, 0.05, 0.01);
+      graph.AddEdge({node - 1,
+                     node,
+                     {Between(truths[static_cast<std::size_t>(node) - 1], truth),
+                      sigma.cwiseAbs2().asDiagonal()},
+                     EdgeKind::kOdometry});
+    }
+    if (i % 3 == 2) continue;  // a mask leaves some out
+    const auto expected = FindCandidates(graph, node, DijkstraProjection(graph, node), options);
+    const auto candidates = search.Of(graph, node, options);
+    ASSERT_EQ(candidates.size(), expected.size()) << i;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      EXPECT_EQ(candidates[c].node, expected[c].node) << i;
+      EXPECT_NEAR(candidates[c].mahalanobis, expected[c].mahalanobis, 1e-9);
+      EXPECT_TRUE(candidates[c].T_new_node.covariance.isApprox(expected[c].T_new_node.covariance));
+    }
+    found += candidates.size();
+    if (i % 5 != 0 || candidates.size() < 5) continue;
+    const NodeId older = candidates.back().node;
+    graph.AddEdge({older,
+                   node,
+                   {Between(truths[static_cast<std::size_t>(older)], truth),
+                    Eigen::Vector3d(0.0004, 0.0004, 0.0001).asDiagonal()},
+                   EdgeKind::kClosure});
+  }
+  EXPECT_GT(found, 1000U);
 }
 
 }  // namespace

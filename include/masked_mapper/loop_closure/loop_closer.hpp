@@ -31,6 +31,21 @@ std::vector<Candidate> FindCandidates(const PoseGraph& graph, NodeId new_node,
                                       const std::vector<ProjectedNode>& projection,
                                       const CandidateOptions& options);
 
+/// The same, of one new node after the other in a graph that grows, without projecting every node:
+/// how unsure a node can be at most is known from where the last new node was, and what is too far
+/// for that is not looked at.
+class CandidateSearch {
+ public:
+  std::vector<Candidate> Of(const PoseGraph& graph, NodeId new_node,
+                            const CandidateOptions& options);
+
+ private:
+  void GoTo(NodeId new_node, const PoseGraph& graph, ProjectionSearch& search);
+
+  std::vector<double> most_cost_;  ///< by node: of its projection from `last_`, about
+  NodeId last_ = -1;
+};
+
 class LoopCloser {
  public:
   /// What a node is matched against, in its frame.

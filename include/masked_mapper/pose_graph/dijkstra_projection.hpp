@@ -35,6 +35,8 @@ class ProjectionSearch {
   const ProjectedNode* Find(NodeId node, double max_cost = kHoweverUnsure);
   /// Every node within reach, in order of settling: cost, then id.
   std::vector<ProjectedNode> All() &&;
+  /// Those that have been settled so far.
+  const std::vector<ProjectedNode>& settled() const { return settled_; }
 
  private:
   struct Reached {
