@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "masked_mapper/loop_closure/loop_closer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "masked_mapper/geometry/uncertain_pose2.hpp"
-#include "masked_mapper/loop_closure/loop_closer.hpp"
 
 namespace masked_mapper {
 namespace {
