@@ -8,10 +8,12 @@ namespace masked_mapper {
 namespace {
 
 constexpr int kFraction = 32;  // bits: places are whole numbers, so that steps add up as they are
-constexpr double kOne = 4294967296.0;
+constexpr std::int64_t kWhole = std::int64_t{1} << kFraction;
 constexpr int kTogether = 8;  // voxels passed before, in a row, from which two ways are one
 
-std::int64_t Fixed(double place) { return static_cast<std::int64_t>(place * kOne); }
+std::int64_t Fixed(double place) {
+  return static_cast<std::int64_t>(place * static_cast<double>(kWhole));
+}
 std::int32_t VoxelOf(std::int64_t place) { return static_cast<std::int32_t>(place >> kFraction); }
 
 /// Where a ray, along an axis across its main one, comes from and goes to within a layer of voxels.
@@ -22,7 +24,7 @@ struct Across {
   bool IsOneVoxel() const { return from >> kFraction == to >> kFraction; }
   /// The share of the way from one to the other at which the voxel changes.
   double Change() const {
-    const std::int64_t wall = (from < to ? to : from) >> kFraction << kFraction;
+    const std::int64_t wall = (from < to ? to : from) & ~(kWhole - 1);
     return static_cast<double>(wall - from) / static_cast<double>(to - from);
   }
 };

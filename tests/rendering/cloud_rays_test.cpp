@@ -22,9 +22,9 @@ std::set<VoxelIndex> VoxelsOf(const CloudRays& rays, CloudRays::Bits CloudRays::
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(kSpaceBlockVoxels); ++i) {
       const auto word = static_cast<std::size_t>(i) / 64;
       if (((block.*bits)[word] >> (i % 64) & 1U) == 0) continue;
-      voxels.insert({(block.at[0] << kSpaceBlockBits) + i % kSpaceBlockSide,
-                     (block.at[1] << kSpaceBlockBits) + i / kSpaceBlockSide % kSpaceBlockSide,
-                     (block.at[2] << kSpaceBlockBits) + i / kSpaceBlockSide / kSpaceBlockSide});
+      voxels.insert({kSpaceBlockSide * block.at[0] + i % kSpaceBlockSide,
+                     kSpaceBlockSide * block.at[1] + i / kSpaceBlockSide % kSpaceBlockSide,
+                     kSpaceBlockSide * block.at[2] + i / kSpaceBlockSide / kSpaceBlockSide});
     }
   }
   return voxels;

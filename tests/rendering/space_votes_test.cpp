@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace masked_mapper {
 namespace {
@@ -100,6 +102,31 @@ TEST(SpaceVotesTest, SurfacesSeenAtASlantStay) {
   EXPECT_GT(wall, 1000U);
   EXPECT_LT(floor_lost, floor / 200);
   EXPECT_LT(wall_lost, wall / 200);
+}
+
+TEST(SpaceVotesTest, AnyNumberOfThreadsCountsTheSame) {
+  std::vector<SpaceStates> counted;
+  for (const int threads : {1, 3}) {
+    SpaceVoteOptions options;
+    options.threads = threads;
+    SpaceVotes votes(options);
+    for (int cloud = 0; cloud < 60; ++cloud) {
+      std::vector<Eigen::Vector3f> ends;
+      for (int ray = 0; ray < 500; ++ray) {
+        const float turn = 0.0126F * static_cast<float>(ray);
+        ends.emplace_back(0.1F * static_cast<float>(cloud) + 4.0F * std::cos(turn),
+                          4.0F * std::sin(turn), 0.02F * static_cast<float>(ray % 100));
+      }
+      votes.Add({0.1 * cloud, 0.0, 0.6}, std::move(ends), 0.0, {});
+    }
+    counted.push_back(votes.Count());
+  }
+  ASSERT_EQ(counted[0].blocks().size(), counted[1].blocks().size());
+  EXPECT_GT(counted[0].blocks().size(), 100U);
+  for (std::size_t i = 0; i < counted[0].blocks().size(); ++i) {
+    EXPECT_EQ(counted[0].blocks()[i].at, counted[1].blocks()[i].at);
+    EXPECT_EQ(counted[0].blocks()[i].cells, counted[1].blocks()[i].cells);
+  }
 }
 
 TEST(SpaceVotesTest, WhatIsNowhereIsLeftOut) {
