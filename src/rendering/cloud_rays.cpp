@@ -16,6 +16,16 @@ std::int64_t Fixed(double place) {
 }
 std::int32_t VoxelOf(std::int64_t place) { return static_cast<std::int32_t>(place >> kFraction); }
 
+/// Whether it was set before.
+bool SetBit(CloudRays::Bits& bits, const VoxelIndex& voxel) {
+  const std::size_t place = PlaceInBlock(voxel);
+  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
+  std::uint64_t& word = bits[place / 64];
+  const bool was_set = (word & bit) != 0;
+  word |= bit;
+  return was_set;
+}
+
 /// Where a ray, along an axis across its main one, comes from and goes to within a layer of voxels.
 struct Across {
   std::int64_t from;
@@ -70,24 +80,13 @@ void CloudRays::GoTo(const VoxelIndex& at) {
 
 bool CloudRays::Hit(const VoxelIndex& voxel) {
   GoTo(BlockOf(voxel));
-  const std::size_t place = PlaceInBlock(voxel);
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  std::uint64_t& bits = blocks_[last_].hit[place / 64];
-  const bool is_first = (bits & bit) == 0;
-  bits |= bit;
-  return is_first;
+  return !SetBit(blocks_[last_].hit, voxel);
 }
 
 /// Whether it was passed before.
 inline bool CloudRays::Mark(const VoxelIndex& voxel) {
-  const VoxelIndex at = BlockOf(voxel);
-  if (!IsSame(at, blocks_[last_].at)) last_ = PlaceBeside(last_, at);
-  const std::size_t place = PlaceInBlock(voxel);
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  std::uint64_t& bits = blocks_[last_].passed[place / 64];
-  const bool was_passed = (bits & bit) != 0;
-  bits |= bit;
-  return was_passed;
+  GoTo(BlockOf(voxel));
+  return SetBit(blocks_[last_].passed, voxel);
 }
 
 void CloudRays::Pass(const Eigen::Vector3d& end) {

@@ -25,8 +25,8 @@ class CloudRays {
     VoxelIndex at{};  ///< in sides of blocks
     Bits hit{};
     Bits passed{};
-    std::array<std::int32_t, 6>
-        beside{};  ///< blocks before and behind along x, y, z; -1: not known
+    /// Blocks before and behind along x, y, z; -1: not known.
+    std::array<std::int32_t, 6> beside{};
   };
 
   /// Forgets the cloud before. Places lie within kFarthestVoxel of the origin.
