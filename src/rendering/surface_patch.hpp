@@ -28,7 +28,7 @@ class SurfacePatch {
   Eigen::Vector3f sum_ = Eigen::Vector3f::Zero();
   Eigen::Vector3f squares_ = Eigen::Vector3f::Zero();   ///< of x, y, z
   Eigen::Vector3f products_ = Eigen::Vector3f::Zero();  ///< of y and z, z and x, x and y
-  Eigen::Vector3f normal_ = Eigen::Vector3f::Zero();  ///< zero: none
+  Eigen::Vector3f normal_ = Eigen::Vector3f::Zero();    ///< zero: none
 };
 
 }  // namespace masked_mapper
