@@ -91,6 +91,13 @@ class LocalMap::Impl {
     std::uint8_t settled = 0;  ///< a bit for each of `known`: no point came since it was worked out
   };
   using Cell = CellSlots::Cell;
+  /// A point as an alignment goes on: most stay in their cells from one step to the next, and what
+  /// is known of a cell is then at hand.
+  struct Sight {
+    std::uint8_t side = 0;
+    Cell cell;  ///< in which the point lay at the last step; none before the first
+    Distribution known;
+  };
 
   Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                   const Eigen::Matrix3d& prior_information, double guess_outlier_sigmas) const;
@@ -98,13 +105,14 @@ class LocalMap::Impl {
   std::size_t AddSlot(Cell cell);
   Moments& MomentsOf(std::int32_t& at);
   std::vector<std::uint8_t> SidesOf(const FacedPoints& points, double theta) const;
+  std::vector<Sight> SightsOf(const FacedPoints& points, double theta) const;
   std::size_t MarkAround(Cell cell, std::size_t side);
   const Distribution& Seen(std::size_t slot, std::size_t side) const;
   const Distribution& Settled(std::size_t slot, std::size_t side) const;
   Moments SumAround(Cell cell, std::size_t side) const;
   void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
-  double Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
-              const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+  double Step(const FacedPoints& points, const Pose2& T_map_robot, double sigma_m,
+              std::vector<Sight>& sights, Eigen::Matrix3d& hessian,
               Eigen::Vector3d& gradient) const;
 
   LocalMapOptions options_;
@@ -169,6 +177,14 @@ std::vector<std::uint8_t> LocalMap::Impl::SidesOf(const FacedPoints& points, dou
     sides[i] = static_cast<std::uint8_t>((ahead ? 0 : 1) + (left ? 0 : 2));
   }
   return sides;
+}
+
+std::vector<LocalMap::Impl::Sight> LocalMap::Impl::SightsOf(const FacedPoints& points,
+                                                            double theta) const {
+  const std::vector<std::uint8_t> sides = SidesOf(points, theta);
+  std::vector<Sight> sights(sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) sights[i].side = sides[i];
+  return sights;
 }
 
 void LocalMap::Impl::Add(const FacedPoints& points_in_robot, const Pose2& T_map_robot) {
@@ -299,8 +315,8 @@ const LocalMap::Impl::Distribution& LocalMap::Impl::Seen(std::size_t slot, std::
   return face.is_line ? face : Settled(slot, kSides);
 }
 
-double LocalMap::Impl::Step(const FacedPoints& points, const std::vector<std::uint8_t>& sides,
-                            const Pose2& T_map_robot, double sigma_m, Eigen::Matrix3d& hessian,
+double LocalMap::Impl::Step(const FacedPoints& points, const Pose2& T_map_robot, double sigma_m,
+                            std::vector<Sight>& sights, Eigen::Matrix3d& hessian,
                             Eigen::Vector3d& gradient) const {
   const double c = std::cos(T_map_robot.theta);
   const double s = std::sin(T_map_robot.theta);
@@ -313,9 +329,13 @@ double LocalMap::Impl::Step(const FacedPoints& points, const std::vector<std::ui
     const double rx = c * points.x[i] - s * points.y[i];
     const double ry = s * points.x[i] + c * points.y[i];
     if (!FindCell(T_map_robot.x + rx, T_map_robot.y + ry, &cell)) continue;
-    const std::int32_t slot = slots_.SlotOf(cell);
-    if (slot < 0) continue;
-    const Distribution& d = Seen(static_cast<std::size_t>(slot), sides[i]);
+    Sight& sight = sights[i];
+    if (cell.column != sight.cell.column || cell.row != sight.cell.row) {
+      const std::int32_t slot = slots_.SlotOf(cell);
+      sight.cell = cell;
+      sight.known = slot < 0 ? Distribution{} : Seen(static_cast<std::size_t>(slot), sight.side);
+    }
+    const Distribution& d = sight.known;
     if (!d.is_known) continue;
     const double ex = T_map_robot.x + rx - d.mean_x;
     const double ey = T_map_robot.y + ry - d.mean_y;
@@ -399,8 +419,8 @@ double LocalMap::Impl::Agreement(const FacedPoints& points_in_robot, const Pose2
   if (points_in_robot.empty()) return 0.0;
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
-  const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot.theta);
-  return Step(points_in_robot, sides, T_map_robot, sigma_m, hessian, gradient) /
+  std::vector<Sight> sights = SightsOf(points_in_robot, T_map_robot.theta);
+  return Step(points_in_robot, T_map_robot, sigma_m, sights, hessian, gradient) /
          static_cast<double>(points_in_robot.size());
 }
 
@@ -425,12 +445,12 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
   if (points_in_robot.empty()) return result;
   double sigma = options_.first_sigma_m;
   // A guess turns by less than what lies between the walls of a building and the border of sides.
-  const std::vector<std::uint8_t> sides = SidesOf(points_in_robot, T_map_robot_guess.theta);
+  std::vector<Sight> sights = SightsOf(points_in_robot, T_map_robot_guess.theta);
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
   for (; result.iterations < options_.max_iterations; ++result.iterations) {
     Pose2& pose = result.T_map_robot;
-    Step(points_in_robot, sides, pose, sigma, hessian, gradient);
+    Step(points_in_robot, pose, sigma, sights, hessian, gradient);
     // The scan's own weight shrinks by the inflation, so that the prior is weighed against what the
     // scan really knows.
     const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
@@ -454,7 +474,7 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
     sigma = std::max(options_.point_sigma_m, 0.5 * sigma);
   }
   result.inlier_share =
-      Step(points_in_robot, sides, result.T_map_robot, options_.point_sigma_m, hessian, gradient) /
+      Step(points_in_robot, result.T_map_robot, options_.point_sigma_m, sights, hessian, gradient) /
       static_cast<double>(points_in_robot.size());
   result.information = hessian / options_.covariance_inflation;
   return result;
