@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "masked_mapper/rendering/wall_lines.hpp"
 
@@ -20,10 +21,31 @@ struct Step {
 };
 constexpr std::array<Step, kBeamAxes> kAlong = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}}};
 
+/// Both in order of cells, which are never the same.
+WallCells Merged(const WallCells& walls, const std::vector<GlassCell>& glass) {
+  WallCells all{walls.resolution_m, walls.width, walls.height, {}, {}};
+  std::size_t wall = 0;
+  const auto add_walls_before = [&](std::size_t index) {
+    for (; wall < walls.cells.size() && walls.cells[wall] < index; ++wall) {
+      all.cells.push_back(walls.cells[wall]);
+      all.points.push_back(walls.points[wall]);
+    }
+  };
+  for (const GlassCell& cell : glass) {
+    add_walls_before(cell.index);
+    all.cells.push_back(cell.index);
+    all.points.push_back(cell.point);
+  }
+  add_walls_before(std::numeric_limits<std::size_t>::max());
+  return all;
+}
+
 class GlassSearch {
  public:
   GlassSearch(const std::vector<GlassCell>& cells, const OccupancyGrid& grid)
-      : cells_(cells), grid_(grid) {}
+      : cells_(cells), grid_(grid), walls_(WallCellsOf(grid)) {}
+
+  const WallCells& walls() const { return walls_; }
 
   /// In order of cells.
   std::vector<GlassCell> Found() const {
@@ -71,32 +93,33 @@ class GlassSearch {
     return open;
   }
 
-  /// Of these cells and the walls beside them.
-  std::vector<WallLine> LinesAcross(std::size_t axis, const std::vector<GlassCell>& open) const {
+  /// Walls within kTied of these cells.
+  WallCells Beside(const std::vector<GlassCell>& open) const {
     const int tied = static_cast<int>(std::ceil(kTied / grid_.resolution_m));
-    std::vector<std::uint8_t> is_taken(grid_.cells.size());
+    std::vector<std::uint8_t> is_taken(walls_.cells.size());
     for (const GlassCell& cell : open) {
-      for (int up = -tied; up <= tied; ++up) {
-        for (int right = -tied; right <= tied; ++right) {
-          const int column = ColumnOf(cell.index) + right;
-          const int row = RowOf(cell.index) + up;
-          if (IsWall(column, row)) is_taken[Index(column, row)] = 1;
+      const int first = std::max(0, ColumnOf(cell.index) - tied);
+      const int last = std::min(grid_.width - 1, ColumnOf(cell.index) + tied);
+      for (int row = std::max(0, RowOf(cell.index) - tied);
+           row <= std::min(grid_.height - 1, RowOf(cell.index) + tied); ++row) {
+        auto wall = std::lower_bound(walls_.cells.begin(), walls_.cells.end(), Index(first, row));
+        for (; wall != walls_.cells.end() && *wall <= Index(last, row); ++wall) {
+          is_taken[static_cast<std::size_t>(wall - walls_.cells.begin())] = 1;
         }
       }
     }
-    OccupancyGrid drawn = grid_;
-    drawn.walls.clear();
-    std::size_t wall = 0;
-    std::size_t glass = 0;
-    for (std::size_t index = 0; index < grid_.cells.size(); ++index) {
-      const bool is_wall = grid_.cells[index] == Cell::kOccupied;
-      const bool is_glass = glass < open.size() && open[glass].index == index;
-      drawn.cells[index] = is_glass || is_taken[index] != 0 ? Cell::kOccupied : Cell::kUnknown;
-      if (is_glass) drawn.walls.push_back(open[glass++].point);
-      if (is_wall && is_taken[index] != 0) drawn.walls.push_back(grid_.walls[wall]);
-      if (is_wall) ++wall;
+    WallCells beside{walls_.resolution_m, walls_.width, walls_.height, {}, {}};
+    for (std::size_t wall = 0; wall < is_taken.size(); ++wall) {
+      if (is_taken[wall] == 0) continue;
+      beside.cells.push_back(walls_.cells[wall]);
+      beside.points.push_back(walls_.points[wall]);
     }
-    std::vector<WallLine> lines = FitWallLines(drawn);
+    return beside;
+  }
+
+  /// Of these cells and the walls beside them.
+  std::vector<WallLine> LinesAcross(std::size_t axis, const std::vector<GlassCell>& open) const {
+    std::vector<WallLine> lines = FitWallLines(Merged(Beside(open), open));
     const double angle = std::atan2(kAlong[axis].row, kAlong[axis].column);
     const auto is_no_pane = [&](const WallLine& line) {
       const Eigen::Vector2d way = line.b - line.a;
@@ -123,25 +146,18 @@ class GlassSearch {
 
   const std::vector<GlassCell>& cells_;
   const OccupancyGrid& grid_;
+  WallCells walls_;
 };
 
 }  // namespace
 
 void KeepGlass(const std::vector<GlassCell>& cells, OccupancyGrid* grid) {
-  const std::vector<GlassCell> found = GlassSearch(cells, *grid).Found();
+  if (cells.empty()) return;
+  const GlassSearch search(cells, *grid);
+  const std::vector<GlassCell> found = search.Found();
   if (found.empty()) return;
-  std::vector<WallPoint> walls;
-  std::size_t wall = 0;
-  std::size_t glass = 0;
-  for (std::size_t index = 0; index < grid->cells.size(); ++index) {
-    if (glass < found.size() && found[glass].index == index) {
-      grid->cells[index] = Cell::kOccupied;
-      walls.push_back(found[glass++].point);
-    } else if (grid->cells[index] == Cell::kOccupied) {
-      walls.push_back(grid->walls[wall++]);
-    }
-  }
-  grid->walls = std::move(walls);
+  grid->walls = Merged(search.walls(), found).points;
+  for (const GlassCell& cell : found) grid->cells[cell.index] = Cell::kOccupied;
 }
 
 }  // namespace masked_mapper

@@ -34,12 +34,18 @@ struct HitCount {
 /// Counts of the rows [first_row, last_row) of the grid.
 class Band {
  public:
-  Band(int first_row, int last_row, int width)
-      : first_row_(first_row),
-        last_row_(last_row),
-        width_(width),
-        hits_(static_cast<std::size_t>(last_row - first_row) * static_cast<std::size_t>(width)) {
-    for (Counts& visits : visits_) visits.resize(hits_.size());
+  explicit Band(int width) : width_(width) {}
+
+  /// Counts other rows from now on, in the same memory.
+  void Restart(int first_row, int last_row) {
+    first_row_ = first_row;
+    last_row_ = last_row;
+    const auto cells =
+        static_cast<std::size_t>(last_row - first_row) * static_cast<std::size_t>(width_);
+    for (Counts& visits : visits_) visits.assign(cells, 0);
+    hits_.assign(cells, {});
+    for (Counts& visits : older_visits_) visits.clear();
+    older_hits_.clear();
   }
 
   bool Contains(int row) const { return row >= first_row_ && row < last_row_; }
@@ -183,8 +189,8 @@ class Band {
             static_cast<float>(grid.origin_y + place(row, count.sum_y))};
   }
 
-  int first_row_;
-  int last_row_;
+  int first_row_ = 0;
+  int last_row_ = 0;
   std::int64_t width_;
   std::array<Counts, kBeamAxes> visits_;  // beams that crossed or hit the cell
   std::vector<HitCount> hits_;

@@ -96,8 +96,9 @@ OccupancyGrid RenderGrid(const std::vector<PosedScan>& scans, std::int32_t floor
   std::atomic<int> next_band{0};
   const auto render_bands = [&] {
     BeamDirections cache;
+    Band band(grid.width);
     for (int index = next_band++; index < bands; index = next_band++) {
-      Band band(index * kBandRows, std::min((index + 1) * kBandRows, grid.height), grid.width);
+      band.Restart(index * kBandRows, std::min((index + 1) * kBandRows, grid.height));
       std::size_t drive = chosen.front().posed->drive;
       for (const BoxedScan& scan : chosen) {
         if (CellOf(scan.box.high.y - corner.y) < band.first_row() ||

@@ -55,16 +55,16 @@ Eigen::Vector2d AcrossOf(double angle) { return {-std::sin(angle), std::cos(angl
 
 class LineFitter {
  public:
-  LineFitter(const OccupancyGrid& grid, const WallLineOptions& options)
-      : grid_(grid), options_(options), wall_at_(grid.cells.size(), -1) {
-    std::int32_t wall = 0;
-    for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-      if (grid.cells[cell] != Cell::kOccupied) continue;
-      wall_at_[cell] = wall++;
-      cell_of_.push_back(cell);
-    }
-    for (const WallPoint& point : grid.walls) points_.emplace_back(point.x, point.y);
+  LineFitter(const WallCells& walls, const WallLineOptions& options)
+      : walls_(walls), options_(options) {
+    points_.reserve(walls.points.size());
+    for (const WallPoint& point : walls.points) points_.emplace_back(point.x, point.y);
     is_used_.assign(points_.size(), 0);
+    std::size_t wall = 0;
+    for (int row = 0; row <= walls.height; ++row) {
+      while (wall < walls.cells.size() && walls.cells[wall] < CellAt(0, row)) ++wall;
+      row_begins_.push_back(wall);
+    }
   }
 
   std::vector<WallLine> Fit() {
@@ -82,19 +82,30 @@ class LineFitter {
   }
 
  private:
+  std::size_t CellAt(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(walls_.width) +
+           static_cast<std::size_t>(column);
+  }
+
+  /// Row by row.
   template <typename Visit>
   void ForEachNear(std::size_t wall, double reach_m, const Visit& visit) const {
-    const int reach = static_cast<int>(std::ceil(reach_m / grid_.resolution_m));
-    const auto width = static_cast<std::size_t>(grid_.width);
-    const int column = static_cast<int>(cell_of_[wall] % width);
-    const int row = static_cast<int>(cell_of_[wall] / width);
-    for (int r = std::max(0, row - reach); r <= std::min(grid_.height - 1, row + reach); ++r) {
-      for (int c = std::max(0, column - reach); c <= std::min(grid_.width - 1, column + reach);
-           ++c) {
-        const std::int32_t near =
-            wall_at_[static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c)];
-        if (near < 0) continue;
-        const auto other = static_cast<std::size_t>(near);
+    const int reach = static_cast<int>(std::ceil(reach_m / walls_.resolution_m));
+    const auto width = static_cast<std::size_t>(walls_.width);
+    const int column = static_cast<int>(walls_.cells[wall] % width);
+    const int row = static_cast<int>(walls_.cells[wall] / width);
+    const int first_column = std::max(0, column - reach);
+    const int last_column = std::min(walls_.width - 1, column + reach);
+    for (int r = std::max(0, row - reach); r <= std::min(walls_.height - 1, row + reach); ++r) {
+      const auto at = [&](std::size_t index) {
+        return walls_.cells.begin() + static_cast<std::ptrdiff_t>(index);
+      };
+      const auto end = at(row_begins_[static_cast<std::size_t>(r) + 1]);
+      const std::size_t last = CellAt(last_column, r);
+      for (auto near = std::lower_bound(at(row_begins_[static_cast<std::size_t>(r)]), end,
+                                        CellAt(first_column, r));
+           near != end && *near <= last; ++near) {
+        const auto other = static_cast<std::size_t>(near - walls_.cells.begin());
         if ((points_[other] - points_[wall]).norm() <= reach_m) visit(other);
       }
     }
@@ -103,7 +114,7 @@ class LineFitter {
   void TellDirections() {
     angle_.resize(points_.size());
     straightness_.resize(points_.size());
-    const double reach = std::max(options_.neighbourhood_m, 2.0 * grid_.resolution_m);
+    const double reach = std::max(options_.neighbourhood_m, 2.0 * walls_.resolution_m);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       LineSums sums;
       ForEachNear(i, reach, [&](std::size_t other) { sums.Add(points_[other]); });
@@ -120,7 +131,7 @@ class LineFitter {
     std::vector<std::size_t> region = {seed};
     is_used_[seed] = 1;
     sums.Add(points_[seed]);
-    const double reach = std::max(0.15, 2.9 * grid_.resolution_m);
+    const double reach = std::max(0.15, 2.9 * walls_.resolution_m);
     for (std::size_t i = 0; i < region.size(); ++i) {
       ForEachNear(region[i], reach, [&](std::size_t other) {
         if (is_used_[other] != 0 || AngleBetween(angle_[other], angle) > kSameWall) return;
@@ -143,7 +154,7 @@ class LineFitter {
     std::vector<std::pair<double, std::size_t>> order;
     for (const std::size_t i : region) order.emplace_back(along.dot(points_[i] - centre), i);
     std::sort(order.begin(), order.end());
-    const double largest_gap = std::max(options_.largest_gap_m, 2.5 * grid_.resolution_m);
+    const double largest_gap = std::max(options_.largest_gap_m, 2.5 * walls_.resolution_m);
     for (std::size_t first = 0; first < order.size();) {
       std::size_t end = first + 1;
       while (end < order.size() && order[end].first - order[end - 1].first <= largest_gap) ++end;
@@ -194,10 +205,9 @@ class LineFitter {
     }
   }
 
-  const OccupancyGrid& grid_;
+  const WallCells& walls_;
   const WallLineOptions& options_;
-  std::vector<std::int32_t> wall_at_;  ///< by cell: its wall point, or -1
-  std::vector<std::size_t> cell_of_;   ///< by wall point
+  std::vector<std::size_t> row_begins_;  ///< of each row and of the end: its first wall point
   std::vector<Eigen::Vector2d> points_;
   std::vector<double> angle_;         ///< of the wall around a point
   std::vector<double> straightness_;  ///< 0 to 1; 0: nothing to tell it by
@@ -282,8 +292,21 @@ double SigmaOfMedian(const std::vector<ParallelWall>& walls) {
 
 }  // namespace
 
+WallCells WallCellsOf(const OccupancyGrid& grid) {
+  WallCells walls{grid.resolution_m, grid.width, grid.height, {}, grid.walls};
+  walls.cells.reserve(grid.walls.size());
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    if (grid.cells[cell] == Cell::kOccupied) walls.cells.push_back(cell);
+  }
+  return walls;
+}
+
+std::vector<WallLine> FitWallLines(const WallCells& walls, const WallLineOptions& options) {
+  return LineFitter(walls, options).Fit();
+}
+
 std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options) {
-  return LineFitter(grid, options).Fit();
+  return FitWallLines(WallCellsOf(grid), options);
 }
 
 std::optional<WallDirection> DirectionOf(const std::vector<WallLine>& lines) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -25,8 +26,20 @@ struct WallLineOptions {
   double corner_m = 0.2;  ///< ends so near the crossing of their lines meet there
 };
 
+/// The occupied cells of a grid alone: they are few of all.
+struct WallCells {
+  double resolution_m = 0.05;
+  int width = 0;  ///< of the grid, in cells
+  int height = 0;
+  std::vector<std::size_t> cells;  ///< row by row, in order
+  std::vector<WallPoint> points;   ///< one per cell
+};
+
+WallCells WallCellsOf(const OccupancyGrid& grid);
+
 /// In a fixed order. What is no line of that length (legs of chairs, specks) is left out; what is
 /// round becomes several.
+std::vector<WallLine> FitWallLines(const WallCells& walls, const WallLineOptions& options = {});
 std::vector<WallLine> FitWallLines(const OccupancyGrid& grid, const WallLineOptions& options = {});
 
 /// The direction that most walls have or stand square to: the median of the walls about it, since
