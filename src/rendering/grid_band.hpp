@@ -31,6 +31,37 @@ struct HitCount {
   }
 };
 
+/// The hits of cells, of which few are hit.
+class HitCounts {
+ public:
+  /// So many cells, none of them hit.
+  void Restart(std::size_t cells) {
+    place_of_.assign(cells, 0);
+    counts_.assign(1, {});
+  }
+
+  const HitCount& at(std::size_t cell) const { return counts_[place_of_[cell]]; }
+
+  /// To be counted up.
+  HitCount& Of(std::size_t cell) {
+    std::uint32_t& place = place_of_[cell];
+    if (place == 0) {
+      place = static_cast<std::uint32_t>(counts_.size());
+      counts_.emplace_back();
+    }
+    return counts_[place];
+  }
+
+  void swap(HitCounts& other) {
+    place_of_.swap(other.place_of_);
+    counts_.swap(other.counts_);
+  }
+
+ private:
+  std::vector<std::uint32_t> place_of_;  ///< by cell, in counts_
+  std::vector<HitCount> counts_;         ///< the first: of cells that nothing hit
+};
+
 /// Counts of the rows [first_row, last_row) of the grid.
 class Band {
  public:
@@ -43,9 +74,9 @@ class Band {
     const auto cells =
         static_cast<std::size_t>(last_row - first_row) * static_cast<std::size_t>(width_);
     for (Counts& visits : visits_) visits.assign(cells, 0);
-    hits_.assign(cells, {});
+    hits_.Restart(cells);
     for (Counts& visits : older_visits_) visits.clear();
-    older_hits_.clear();
+    older_hits_.Restart(0);
   }
 
   bool Contains(int row) const { return row >= first_row_ && row < last_row_; }
@@ -73,27 +104,28 @@ class Band {
     if (!Contains(end_row)) return;
     const std::size_t index = Index(end_column, end_row);
     ++visits[index];
-    if (hit) AddHit(end, axis, &hits_[index]);
+    if (hit) AddHit(end, axis, &hits_.Of(index));
   }
 
   /// What follows is of a newer drive.
   void BeginDrive() {
     older_visits_.swap(visits_);
     older_hits_.swap(hits_);
-    for (Counts& visits : visits_) visits.assign(older_hits_.size(), 0);
-    hits_.assign(older_hits_.size(), {});
+    const std::size_t cells = older_visits_[0].size();
+    for (Counts& visits : visits_) visits.assign(cells, 0);
+    hits_.Restart(cells);
   }
 
   /// Of a cell that the drive saw often enough to tell a wall by, it alone is believed; elsewhere
   /// what older ones saw counts as well.
   void EndDrive(const GridOptions& options) {
     const double enough = options.min_hits / options.occupied_ratio;
-    for (std::size_t index = 0; index < older_hits_.size(); ++index) {
+    for (std::size_t index = 0; index < older_visits_[0].size(); ++index) {
       if (VisitsOf(index) >= enough) continue;
       for (std::size_t axis = 0; axis < kBeamAxes; ++axis) {
         visits_[axis][index] += older_visits_[axis][index];
       }
-      hits_[index].Add(older_hits_[index]);
+      if (older_hits_.at(index).hits() != 0) hits_.Of(index).Add(older_hits_.at(index));
     }
   }
 
@@ -102,11 +134,11 @@ class Band {
                 std::vector<GlassCell>* glass) const {
     const std::size_t first =
         static_cast<std::size_t>(first_row_) * static_cast<std::size_t>(width_);
-    for (std::size_t index = 0; index < hits_.size(); ++index) {
+    for (std::size_t index = 0; index < visits_[0].size(); ++index) {
       const std::uint32_t visits = VisitsOf(index);
       if (visits == 0) continue;
       Cell& cell = grid->cells[first + index];
-      const std::uint32_t hits = hits_[index].hits();
+      const std::uint32_t hits = hits_.at(index).hits();
       if (hits < options.occupied_ratio * visits || hits == 0) {
         cell = Cell::kFree;
         const std::uint8_t axes = options.glass && hits != 0 ? GlassAxesOf(index, options) : 0;
@@ -131,7 +163,7 @@ class Band {
     for (std::size_t axis = 0; axis < kBeamAxes; ++axis) {
       const std::uint32_t visits = visits_[axis][index];
       if (visits < options.min_hits / options.occupied_ratio) continue;
-      if (hits_[index].by_axis[axis] < options.occupied_ratio * visits) continue;
+      if (hits_.at(index).by_axis[axis] < options.occupied_ratio * visits) continue;
       axes = static_cast<std::uint8_t>(axes | (1U << axis));
     }
     return axes;
@@ -177,7 +209,7 @@ class Band {
   }
 
   WallPoint PointOf(std::size_t index, const OccupancyGrid& grid) const {
-    const HitCount& count = hits_[index];
+    const HitCount& count = hits_.at(index);
     const auto width = static_cast<std::size_t>(width_);
     const auto place = [&](std::size_t cell, std::uint32_t sum) {
       // Half a quantum makes up for the cut-off digits.
@@ -193,10 +225,10 @@ class Band {
   int last_row_ = 0;
   std::int64_t width_;
   std::array<Counts, kBeamAxes> visits_;  // beams that crossed or hit the cell
-  std::vector<HitCount> hits_;
+  HitCounts hits_;
   // Of the drives before, where older ones are to be forgotten.
   std::array<Counts, kBeamAxes> older_visits_;
-  std::vector<HitCount> older_hits_;
+  HitCounts older_hits_;
 };
 
 }  // namespace masked_mapper

@@ -18,7 +18,7 @@
 namespace masked_mapper {
 namespace {
 
-constexpr int kBandRows = 256;       // bounds the memory of counting: 40 bytes per cell of a band
+constexpr int kBandRows = 256;       // bounds the memory of counting: 20 bytes per cell of a band
 constexpr double kMaxCells = 4.0e8;  // 1 km^2 at 5 cm
 constexpr double kMaxCoordinate = 1e7;  // m; far inside what Fixed can hold
 
