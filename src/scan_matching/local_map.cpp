@@ -16,6 +16,9 @@ namespace {
 
 double Square(double value) { return value * value; }
 
+/// m; outside every local map, and its square a number in single precision.
+constexpr float kNowhere = 1e6F;
+
 }  // namespace
 
 class LocalMap::Impl {
@@ -74,7 +77,7 @@ class LocalMap::Impl {
     }
   };
   struct Distribution {
-    float mean_x = 0.0F, mean_y = 0.0F;      ///< in map
+    float mean_x = 0.0F, mean_y = 0.0F;      ///< from corner_
     float normal_x = 0.0F, normal_y = 0.0F;  ///< direction of the smaller variance
     float small = 0.0F, large = 0.0F;        ///< variances, m^2
     float count = 0.0F;                      ///< of points
@@ -91,12 +94,21 @@ class LocalMap::Impl {
     std::uint8_t settled = 0;  ///< a bit for each of `known`: no point came since it was worked out
   };
   using Cell = CellSlots::Cell;
-  /// A point as an alignment goes on: most stay in their cells from one step to the next, and what
-  /// is known of a cell is then at hand.
+  /// Points four at a time, in single precision: about the robot and the corner of the map that is
+  /// good to some micrometres.
+  using Four = Eigen::Array4f;
+  using FourCells = Eigen::Array4i;
+  /// Four points as an alignment goes on, and what is known where they lie: most stay in their
+  /// cells from one step to the next.
   struct Sight {
-    std::uint8_t side = 0;
-    Cell cell;  ///< in which the point lay at the last step; none before the first
-    Distribution known;
+    Four x = Four::Zero(), y = Four::Zero();      ///< of the points, in robot
+    FourCells cell = FourCells::Constant(kNone);  ///< row by row; kNone: outside, or no point
+    Four mean_x = Four::Zero(), mean_y = Four::Zero();
+    Four normal_x = Four::Zero(), normal_y = Four::Zero();
+    Four small = Four::Ones(), large = Four::Ones();
+    Four is_known = Four::Zero();   ///< 1: the point counts
+    Four is_spread = Four::Zero();  ///< 1: no line; it counts along the wall, too
+    std::array<std::uint8_t, 4> side = {};
   };
 
   Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
@@ -111,9 +123,9 @@ class LocalMap::Impl {
   const Distribution& Settled(std::size_t slot, std::size_t side) const;
   Moments SumAround(Cell cell, std::size_t side) const;
   void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
-  double Step(const FacedPoints& points, const Pose2& T_map_robot, double sigma_m,
-              std::vector<Sight>& sights, Eigen::Matrix3d& hessian,
-              Eigen::Vector3d& gradient) const;
+  void Look(std::size_t lane, std::int32_t cell, Sight& sight) const;
+  double Step(const Pose2& T_map_robot, double sigma_m, std::vector<Sight>& sights,
+              Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const;
 
   LocalMapOptions options_;
   double cells_per_m_;
@@ -182,8 +194,15 @@ std::vector<std::uint8_t> LocalMap::Impl::SidesOf(const FacedPoints& points, dou
 std::vector<LocalMap::Impl::Sight> LocalMap::Impl::SightsOf(const FacedPoints& points,
                                                             double theta) const {
   const std::vector<std::uint8_t> sides = SidesOf(points, theta);
-  std::vector<Sight> sights(sides.size());
-  for (std::size_t i = 0; i < sides.size(); ++i) sights[i].side = sides[i];
+  std::vector<Sight> sights((points.size() + 3) / 4);
+  if (!sights.empty()) sights.back().x.setConstant(kNowhere);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Sight& sight = sights[i / 4];
+    const auto lane = static_cast<Eigen::Index>(i % 4);
+    sight.x[lane] = std::clamp(points.x[i], -kNowhere, kNowhere);
+    sight.y[lane] = std::clamp(points.y[i], -kNowhere, kNowhere);
+    sight.side[i % 4] = sides[i];
+  }
   return sights;
 }
 
@@ -261,8 +280,8 @@ LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t side) c
 void LocalMap::Impl::Describe(const Moments& sum, Cell cell, Distribution& d) const {
   const double mx = sum.x / sum.count;
   const double my = sum.y / sum.count;
-  d.mean_x = static_cast<float>(corner_.x() + (cell.column + 0.5) * options_.cell_m + mx);
-  d.mean_y = static_cast<float>(corner_.y() + (cell.row + 0.5) * options_.cell_m + my);
+  d.mean_x = static_cast<float>((cell.column + 0.5) * options_.cell_m + mx);
+  d.mean_y = static_cast<float>((cell.row + 0.5) * options_.cell_m + my);
   const double xx = sum.xx / sum.count - mx * mx;
   const double xy = sum.xy / sum.count - mx * my;
   const double yy = sum.yy / sum.count - my * my;
@@ -315,72 +334,91 @@ const LocalMap::Impl::Distribution& LocalMap::Impl::Seen(std::size_t slot, std::
   return face.is_line ? face : Settled(slot, kSides);
 }
 
-double LocalMap::Impl::Step(const FacedPoints& points, const Pose2& T_map_robot, double sigma_m,
-                            std::vector<Sight>& sights, Eigen::Matrix3d& hessian,
-                            Eigen::Vector3d& gradient) const {
-  const double c = std::cos(T_map_robot.theta);
-  const double s = std::sin(T_map_robot.theta);
-  const double noise = Square(sigma_m);
-  const double outlier = 1.0 / Square(options_.outlier_sigmas);
-  double inliers = 0.0;
-  double h00 = 0, h01 = 0, h02 = 0, h11 = 0, h12 = 0, h22 = 0, g0 = 0, g1 = 0, g2 = 0;
-  Cell cell;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double rx = c * points.x[i] - s * points.y[i];
-    const double ry = s * points.x[i] + c * points.y[i];
-    if (!FindCell(T_map_robot.x + rx, T_map_robot.y + ry, &cell)) continue;
-    Sight& sight = sights[i];
-    if (cell.column != sight.cell.column || cell.row != sight.cell.row) {
-      const std::int32_t slot = slots_.SlotOf(cell);
-      sight.cell = cell;
-      sight.known = slot < 0 ? Distribution{} : Seen(static_cast<std::size_t>(slot), sight.side);
+/// Takes up what is known of a cell.
+void LocalMap::Impl::Look(std::size_t lane, std::int32_t cell, Sight& sight) const {
+  const auto i = static_cast<Eigen::Index>(lane);
+  sight.cell[i] = cell;
+  sight.is_known[i] = 0.0F;
+  if (cell == kNone) return;
+  const std::int32_t slot = slots_.SlotOf({cell % slots_.width(), cell / slots_.width()});
+  if (slot < 0) return;
+  const Distribution& seen = Seen(static_cast<std::size_t>(slot), sight.side[lane]);
+  if (!seen.is_known) return;
+  sight.is_known[i] = 1.0F;
+  sight.is_spread[i] = seen.is_line ? 0.0F : 1.0F;
+  sight.mean_x[i] = seen.mean_x;
+  sight.mean_y[i] = seen.mean_y;
+  sight.normal_x[i] = seen.normal_x;
+  sight.normal_y[i] = seen.normal_y;
+  sight.small[i] = seen.small;
+  sight.large[i] = seen.large;
+}
+
+double LocalMap::Impl::Step(const Pose2& T_map_robot, double sigma_m, std::vector<Sight>& sights,
+                            Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const {
+  const auto c = static_cast<float>(std::cos(T_map_robot.theta));
+  const auto s = static_cast<float>(std::sin(T_map_robot.theta));
+  const auto x = static_cast<float>(T_map_robot.x - corner_.x());
+  const auto y = static_cast<float>(T_map_robot.y - corner_.y());
+  hessian.setZero();
+  gradient.setZero();
+  if (!(std::abs(x) < kNowhere && std::abs(y) < kNowhere)) return 0.0;
+  const auto per_m = static_cast<float>(cells_per_m_);
+  const auto noise = static_cast<float>(Square(sigma_m));
+  const auto outlier = static_cast<float>(1.0 / Square(options_.outlier_sigmas));
+  const auto least = static_cast<float>(options_.window_cells);
+  const auto end = static_cast<float>(slots_.width() - options_.window_cells);
+  const auto width = static_cast<float>(slots_.width());
+  Four inliers = Four::Zero();
+  Four h00 = Four::Zero(), h01 = Four::Zero(), h02 = Four::Zero(), h11 = Four::Zero();
+  Four h12 = Four::Zero(), h22 = Four::Zero();
+  Four g0 = Four::Zero(), g1 = Four::Zero(), g2 = Four::Zero();
+  for (Sight& sight : sights) {
+    const Four rx = c * sight.x - s * sight.y;
+    const Four ry = s * sight.x + c * sight.y;
+    const Four column = (rx + x) * per_m;
+    const Four row = (ry + y) * per_m;
+    const auto is_inside = column >= least && row >= least && column < end && row < end;
+    const FourCells cell = is_inside.select(row.max(0.0F).min(width).cast<int>() * slots_.width() +
+                                                column.max(0.0F).min(width).cast<int>(),
+                                            FourCells::Constant(kNone));
+    if ((cell != sight.cell).any()) {
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        const auto i = static_cast<Eigen::Index>(lane);
+        if (cell[i] != sight.cell[i]) Look(lane, cell[i], sight);
+      }
     }
-    const Distribution& d = sight.known;
-    if (!d.is_known) continue;
-    const double ex = T_map_robot.x + rx - d.mean_x;
-    const double ey = T_map_robot.y + ry - d.mean_y;
-    const double nx = d.normal_x;
-    const double ny = d.normal_y;
-    const double across = nx * ex + ny * ey;
-    const double w_across = 1.0 / (d.small + noise);
-    // d(point)/d(x, y, theta) = [1 0 -ry; 0 1 rx], projected on the normal and on the tangent.
-    const double turn_across = ny * rx - nx * ry;
-    if (d.is_line) {
-      const double weight = 1.0 / Square(1.0 + w_across * across * across * outlier);
-      inliers += weight;
-      const double wa = weight * w_across;
-      h00 += wa * nx * nx;
-      h01 += wa * nx * ny;
-      h02 += wa * nx * turn_across;
-      h11 += wa * ny * ny;
-      h12 += wa * ny * turn_across;
-      h22 += wa * turn_across * turn_across;
-      g0 += wa * nx * across;
-      g1 += wa * ny * across;
-      g2 += wa * turn_across * across;
-      continue;
-    }
-    const double along = nx * ey - ny * ex;
-    const double w_along = 1.0 / (d.large + noise);
-    const double chi2 = w_across * across * across + w_along * along * along;
-    const double weight = 1.0 / Square(1.0 + chi2 * outlier);
+    const Four& nx = sight.normal_x;
+    const Four& ny = sight.normal_y;
+    const Four ex = rx + (x - sight.mean_x);
+    const Four ey = ry + (y - sight.mean_y);
+    const Four across = nx * ex + ny * ey;
+    const Four along = nx * ey - ny * ex;
+    const Four w_across = 1.0F / (sight.small + noise);
+    const Four w_along = sight.is_spread / (sight.large + noise);
+    const Four chi2 = w_across * across.square() + w_along * along.square();
+    const Four weight = sight.is_known / (1.0F + chi2 * outlier).square();
     inliers += weight;
-    const double turn_along = ny * ry + nx * rx;
-    const double wa = weight * w_across;
-    const double wb = weight * w_along;
+    // d(point)/d(x, y, theta) = [1 0 -ry; 0 1 rx], projected on the normal and on the tangent.
+    const Four turn_across = ny * rx - nx * ry;
+    const Four turn_along = ny * ry + nx * rx;
+    const Four wa = weight * w_across;
+    const Four wb = weight * w_along;
     h00 += wa * nx * nx + wb * ny * ny;
-    h01 += wa * nx * ny - wb * ny * nx;
+    h01 += (wa - wb) * nx * ny;
     h02 += wa * nx * turn_across - wb * ny * turn_along;
     h11 += wa * ny * ny + wb * nx * nx;
     h12 += wa * ny * turn_across + wb * nx * turn_along;
-    h22 += wa * turn_across * turn_across + wb * turn_along * turn_along;
+    h22 += wa * turn_across.square() + wb * turn_along.square();
     g0 += wa * nx * across - wb * ny * along;
     g1 += wa * ny * across + wb * nx * along;
     g2 += wa * turn_across * across + wb * turn_along * along;
   }
-  hessian << h00, h01, h02, h01, h11, h12, h02, h12, h22;
-  gradient << g0, g1, g2;
-  return inliers;
+  const auto sum = [](const Four& four) { return static_cast<double>(four.sum()); };
+  hessian << sum(h00), sum(h01), sum(h02), sum(h01), sum(h11), sum(h12), sum(h02), sum(h12),
+      sum(h22);
+  gradient << sum(g0), sum(g1), sum(g2);
+  return sum(inliers);
 }
 
 // A line through n points with variances s across and l along it is wrong in direction by
@@ -401,7 +439,7 @@ Eigen::Matrix2d LocalMap::Impl::InformationOfNoise(const FacedPoints& points,
     if (slot < 0) continue;
     const Distribution& d = Seen(static_cast<std::size_t>(slot), sides[i]);
     if (!d.is_known) continue;
-    const Eigen::Vector2d error = point - Eigen::Vector2d(d.mean_x, d.mean_y);
+    const Eigen::Vector2d error = point - corner_ - Eigen::Vector2d(d.mean_x, d.mean_y);
     const Eigen::Vector2d tangent(-d.normal_y, d.normal_x);
     const double w_across = 1.0 / (d.small + noise);
     const double w_along = d.is_line ? 0.0 : 1.0 / (d.large + noise);
@@ -420,7 +458,7 @@ double LocalMap::Impl::Agreement(const FacedPoints& points_in_robot, const Pose2
   Eigen::Matrix3d hessian;
   Eigen::Vector3d gradient;
   std::vector<Sight> sights = SightsOf(points_in_robot, T_map_robot.theta);
-  return Step(points_in_robot, T_map_robot, sigma_m, sights, hessian, gradient) /
+  return Step(T_map_robot, sigma_m, sights, hessian, gradient) /
          static_cast<double>(points_in_robot.size());
 }
 
@@ -450,7 +488,7 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
   Eigen::Vector3d gradient;
   for (; result.iterations < options_.max_iterations; ++result.iterations) {
     Pose2& pose = result.T_map_robot;
-    Step(points_in_robot, pose, sigma, sights, hessian, gradient);
+    Step(pose, sigma, sights, hessian, gradient);
     // The scan's own weight shrinks by the inflation, so that the prior is weighed against what the
     // scan really knows.
     const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
@@ -474,7 +512,7 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
     sigma = std::max(options_.point_sigma_m, 0.5 * sigma);
   }
   result.inlier_share =
-      Step(points_in_robot, result.T_map_robot, options_.point_sigma_m, sights, hessian, gradient) /
+      Step(result.T_map_robot, options_.point_sigma_m, sights, hessian, gradient) /
       static_cast<double>(points_in_robot.size());
   result.information = hessian / options_.covariance_inflation;
   return result;
