@@ -154,7 +154,7 @@ UncertainPose2 ScanOdometry::Observe(const LaserScan& scan, const UncertainPose2
   UncertainPose2 step =
       is_believed ? Fuse(aligned, predicted, T_map_last) : GoOnByWheels(T_last_now.mean, predicted);
   if (is_believed && tells_alone) {
-    seen_of_step_ = SeenOfStep(view, aligned, predicted, T_map_last);
+    seen_of_step_ = SeenOfStep(aligned, predicted, T_map_last);
   }
   lost_ = is_believed ? 0 : lost_ + 1;
   path_.T_map_matched = path_.T_map_robot;
@@ -289,12 +289,10 @@ double ScanOdometry::ShareOf(const Prediction& predicted) const {
   return std::clamp(share, 1e-3, 1.0);
 }
 
-Eigen::Matrix2d ScanOdometry::SeenOfStep(View& view, const Alignment& aligned,
-                                         const Prediction& predicted,
+Eigen::Matrix2d ScanOdometry::SeenOfStep(const Alignment& aligned, const Prediction& predicted,
                                          const Pose2& T_map_last) const {
   const Eigen::Matrix3d& all = aligned.information;
-  Eigen::Matrix2d seen = all.topLeftCorner<2, 2>() -
-                         maps_.current->InformationOfNoise(view.Points(), aligned.T_map_robot);
+  Eigen::Matrix2d seen = all.topLeftCorner<2, 2>() - aligned.information_of_noise;
   if (all(2, 2) > 0.0) {
     seen -= all.topRightCorner<2, 1>() * all.bottomLeftCorner<1, 2>() / all(2, 2);
   }

@@ -124,7 +124,7 @@ class ScanOdometry {
   UncertainPose2 Fuse(const Alignment& aligned, const Prediction& predicted,
                       const Pose2& T_map_last);
   double ShareOf(const Prediction& predicted) const;
-  Eigen::Matrix2d SeenOfStep(View& view, const Alignment& aligned, const Prediction& predicted,
+  Eigen::Matrix2d SeenOfStep(const Alignment& aligned, const Prediction& predicted,
                              const Pose2& T_map_last) const;
   UncertainPose2 GoOnByWheels(const Pose2& by_wheels, const Prediction& predicted);
   void BeginAnew(View& view);

@@ -32,7 +32,6 @@ class LocalMap::Impl {
                       const Eigen::Matrix3d& prior_information) const;
   double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                    double sigma_m) const;
-  Eigen::Matrix2d InformationOfNoise(const FacedPoints& points, const Pose2& T_map_robot) const;
   std::size_t scans() const { return scans_; }
 
   /// What is known of a cell's surroundings follows from its points.
@@ -108,7 +107,17 @@ class LocalMap::Impl {
     Four small = Four::Ones(), large = Four::Ones();
     Four is_known = Four::Zero();   ///< 1: the point counts
     Four is_spread = Four::Zero();  ///< 1: no line; it counts along the wall, too
+    /// Of the way along it that noise tells: of a line's weight across it, and of another place's
+    /// along it.
+    Four noise_of_line = Four::Zero(), noise_of_spread = Four::Zero();
     std::array<std::uint8_t, 4> side = {};
+  };
+  /// What the points of a scan say of its pose.
+  struct Sums {
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    Eigen::Matrix2d of_noise = Eigen::Matrix2d::Zero();  ///< of the hessian of (x, y)
+    double inliers = 0.0;
   };
 
   Alignment Align(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
@@ -121,11 +130,10 @@ class LocalMap::Impl {
   std::size_t MarkAround(Cell cell, std::size_t side);
   const Distribution& Seen(std::size_t slot, std::size_t side) const;
   const Distribution& Settled(std::size_t slot, std::size_t side) const;
-  Moments SumAround(Cell cell, std::size_t side) const;
+  Moments SumAround(Cell cell, std::size_t first_side, std::size_t end_side) const;
   void Describe(const Moments& sum, Cell cell, Distribution& distribution) const;
   void Look(std::size_t lane, std::int32_t cell, Sight& sight) const;
-  double Step(const Pose2& T_map_robot, double sigma_m, std::vector<Sight>& sights,
-              Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const;
+  Sums SumOver(std::vector<Sight>& sights, const Pose2& T_map_robot, double sigma_m) const;
 
   LocalMapOptions options_;
   double cells_per_m_;
@@ -251,8 +259,10 @@ std::size_t LocalMap::Impl::MarkAround(Cell cell, std::size_t side) {
   return static_cast<std::size_t>(slots_.SlotOf(cell));
 }
 
-/// The moments of a side over the window around a cell, about its center.
-LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t side) const {
+/// The moments of sides, from one to the one before another, over the window around a cell, about
+/// its center.
+LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t first_side,
+                                                  std::size_t end_side) const {
   const int window = options_.window_cells;
   Moments sum;
   for (int dy = -window; dy <= window; ++dy) {
@@ -261,9 +271,13 @@ LocalMap::Impl::Moments LocalMap::Impl::SumAround(Cell cell, std::size_t side) c
       if (!slots_.Contains(neighbour)) continue;
       const std::int32_t slot = slots_.SlotOf(neighbour);
       if (slot < 0) continue;
-      const std::int32_t at = in_use_[static_cast<std::size_t>(slot)].moments[side];
-      if (at == kNone) continue;
-      const Moments& m = moments_[static_cast<std::size_t>(at)];
+      const Slot& in_use = in_use_[static_cast<std::size_t>(slot)];
+      Moments m;
+      for (std::size_t side = first_side; side < end_side; ++side) {
+        const std::int32_t at = in_use.moments[side];
+        if (at != kNone) m += moments_[static_cast<std::size_t>(at)];
+      }
+      if (m.count == 0.0) continue;
       const double ox = dx * options_.cell_m;
       const double oy = dy * options_.cell_m;
       sum.count += m.count;
@@ -286,7 +300,7 @@ void LocalMap::Impl::Describe(const Moments& sum, Cell cell, Distribution& d) co
   const double xy = sum.xy / sum.count - mx * my;
   const double yy = sum.yy / sum.count - my * my;
   const double mean = 0.5 * (xx + yy);
-  const double spread = std::hypot(0.5 * (xx - yy), xy);
+  const double spread = std::sqrt(Square(0.5 * (xx - yy)) + Square(xy));
   const double small = std::max(0.0, mean - spread);
   const double large = mean + spread;
   // Cosine and sine of twice the direction of the larger variance, and of its half.
@@ -312,12 +326,7 @@ const LocalMap::Impl::Distribution& LocalMap::Impl::Settled(std::size_t slot,
   }
   in_use.settled |= static_cast<std::uint8_t>(1U << side);
   const Cell cell = slots_.CellOf(slot);
-  Moments sum;
-  if (side < kSides) {
-    sum = SumAround(cell, side);
-  } else {
-    for (std::size_t one = 0; one < kSides; ++one) sum += SumAround(cell, one);
-  }
+  const Moments sum = side < kSides ? SumAround(cell, side, side + 1) : SumAround(cell, 0, kSides);
   if (sum.count == 0.0) return kNothing;
   if (at == kNone) {
     at = static_cast<std::int32_t>(known_.size());
@@ -352,17 +361,22 @@ void LocalMap::Impl::Look(std::size_t lane, std::int32_t cell, Sight& sight) con
   sight.normal_y[i] = seen.normal_y;
   sight.small[i] = seen.small;
   sight.large[i] = seen.large;
+  sight.noise_of_line[i] = seen.is_line ? seen.small / (seen.count * seen.large) : 0.0F;
+  sight.noise_of_spread[i] = seen.is_line ? 0.0F : 1.0F / (seen.count - 1.0F);
 }
 
-double LocalMap::Impl::Step(const Pose2& T_map_robot, double sigma_m, std::vector<Sight>& sights,
-                            Eigen::Matrix3d& hessian, Eigen::Vector3d& gradient) const {
+// Of noise: a line through n points with variances s across and l along it is wrong in direction by
+// s / (n l) rad^2; as much of a point's information lies along it. Where a place is no line, a wall
+// that is seen from afar may be all that it is, and what two points seem to tell of the way along
+// it is where beams happened to fall.
+LocalMap::Impl::Sums LocalMap::Impl::SumOver(std::vector<Sight>& sights, const Pose2& T_map_robot,
+                                             double sigma_m) const {
+  Sums sums;
   const auto c = static_cast<float>(std::cos(T_map_robot.theta));
   const auto s = static_cast<float>(std::sin(T_map_robot.theta));
   const auto x = static_cast<float>(T_map_robot.x - corner_.x());
   const auto y = static_cast<float>(T_map_robot.y - corner_.y());
-  hessian.setZero();
-  gradient.setZero();
-  if (!(std::abs(x) < kNowhere && std::abs(y) < kNowhere)) return 0.0;
+  if (!(std::abs(x) < kNowhere && std::abs(y) < kNowhere)) return sums;
   const auto per_m = static_cast<float>(cells_per_m_);
   const auto noise = static_cast<float>(Square(sigma_m));
   const auto outlier = static_cast<float>(1.0 / Square(options_.outlier_sigmas));
@@ -373,6 +387,7 @@ double LocalMap::Impl::Step(const Pose2& T_map_robot, double sigma_m, std::vecto
   Four h00 = Four::Zero(), h01 = Four::Zero(), h02 = Four::Zero(), h11 = Four::Zero();
   Four h12 = Four::Zero(), h22 = Four::Zero();
   Four g0 = Four::Zero(), g1 = Four::Zero(), g2 = Four::Zero();
+  Four n00 = Four::Zero(), n01 = Four::Zero(), n11 = Four::Zero();
   for (Sight& sight : sights) {
     const Four rx = c * sight.x - s * sight.y;
     const Four ry = s * sight.x + c * sight.y;
@@ -413,52 +428,25 @@ double LocalMap::Impl::Step(const Pose2& T_map_robot, double sigma_m, std::vecto
     g0 += wa * nx * across - wb * ny * along;
     g1 += wa * ny * across + wb * nx * along;
     g2 += wa * turn_across * across + wb * turn_along * along;
+    const Four of_noise = wa * sight.noise_of_line + wb * sight.noise_of_spread;
+    n00 += of_noise * ny * ny;
+    n01 -= of_noise * nx * ny;
+    n11 += of_noise * nx * nx;
   }
   const auto sum = [](const Four& four) { return static_cast<double>(four.sum()); };
-  hessian << sum(h00), sum(h01), sum(h02), sum(h01), sum(h11), sum(h12), sum(h02), sum(h12),
+  sums.hessian << sum(h00), sum(h01), sum(h02), sum(h01), sum(h11), sum(h12), sum(h02), sum(h12),
       sum(h22);
-  gradient << sum(g0), sum(g1), sum(g2);
-  return sum(inliers);
-}
-
-// A line through n points with variances s across and l along it is wrong in direction by
-// s / (n l) rad^2; as much of a point's information lies along it. Where a place is no line, a wall
-// that is seen from afar may be all that it is, and what two points seem to tell of the way along
-// it is where beams happened to fall.
-Eigen::Matrix2d LocalMap::Impl::InformationOfNoise(const FacedPoints& points,
-                                                   const Pose2& T_map_robot) const {
-  const double noise = Square(options_.point_sigma_m);
-  const double outlier = 1.0 / Square(options_.outlier_sigmas);
-  const std::vector<std::uint8_t> sides = SidesOf(points, T_map_robot.theta);
-  Eigen::Matrix2d of_noise = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d point = T_map_robot * Eigen::Vector2d(points.x[i], points.y[i]);
-    Cell cell;
-    if (!FindCell(point.x(), point.y(), &cell)) continue;
-    const std::int32_t slot = slots_.SlotOf(cell);
-    if (slot < 0) continue;
-    const Distribution& d = Seen(static_cast<std::size_t>(slot), sides[i]);
-    if (!d.is_known) continue;
-    const Eigen::Vector2d error = point - corner_ - Eigen::Vector2d(d.mean_x, d.mean_y);
-    const Eigen::Vector2d tangent(-d.normal_y, d.normal_x);
-    const double w_across = 1.0 / (d.small + noise);
-    const double w_along = d.is_line ? 0.0 : 1.0 / (d.large + noise);
-    const double chi2 = w_across * Square(Eigen::Vector2d(d.normal_x, d.normal_y).dot(error)) +
-                        w_along * Square(tangent.dot(error));
-    const double share_of_noise =
-        d.is_line ? w_across * d.small / (d.count * d.large) : w_along / (d.count - 1.0);
-    of_noise += share_of_noise / Square(1.0 + chi2 * outlier) * tangent * tangent.transpose();
-  }
-  return of_noise / options_.covariance_inflation;
+  sums.gradient << sum(g0), sum(g1), sum(g2);
+  sums.of_noise << sum(n00), sum(n01), sum(n01), sum(n11);
+  sums.inliers = sum(inliers);
+  return sums;
 }
 
 double LocalMap::Impl::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                                  double sigma_m) const {
   if (points_in_robot.empty()) return 0.0;
-  Eigen::Matrix3d hessian;
-  Eigen::Vector3d gradient;
   std::vector<Sight> sights = SightsOf(points_in_robot, T_map_robot.theta);
-  return Step(T_map_robot, sigma_m, sights, hessian, gradient) /
+  return SumOver(sights, T_map_robot, sigma_m).inliers /
          static_cast<double>(points_in_robot.size());
 }
 
@@ -484,11 +472,9 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
   double sigma = options_.first_sigma_m;
   // A guess turns by less than what lies between the walls of a building and the border of sides.
   std::vector<Sight> sights = SightsOf(points_in_robot, T_map_robot_guess.theta);
-  Eigen::Matrix3d hessian;
-  Eigen::Vector3d gradient;
   for (; result.iterations < options_.max_iterations; ++result.iterations) {
     Pose2& pose = result.T_map_robot;
-    Step(pose, sigma, sights, hessian, gradient);
+    const Sums sums = SumOver(sights, pose, sigma);
     // The scan's own weight shrinks by the inflation, so that the prior is weighed against what the
     // scan really knows.
     const Eigen::Vector3d from_guess(pose.x - T_map_robot_guess.x, pose.y - T_map_robot_guess.y,
@@ -498,11 +484,11 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
     const double guess_chi2 = from_guess.dot(prior_information * from_guess);
     const Eigen::Matrix3d prior =
         prior_information / (1.0 + guess_chi2 / Square(guess_outlier_sigmas));
-    const Eigen::Matrix3d total = hessian / options_.covariance_inflation + prior;
+    const Eigen::Matrix3d total = sums.hessian / options_.covariance_inflation + prior;
     const Eigen::LDLT<Eigen::Matrix3d> factor(total);
     if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-9)) return result;
     const Eigen::Vector3d step =
-        -factor.solve(gradient / options_.covariance_inflation + prior * from_guess);
+        -factor.solve(sums.gradient / options_.covariance_inflation + prior * from_guess);
     pose = {pose.x + step.x(), pose.y + step.y(), WrapAngle(pose.theta + step.z())};
     const bool is_fine = sigma <= options_.point_sigma_m;
     if (is_fine && step.head<2>().norm() < 5e-4 && std::abs(step.z()) < 1e-4) {
@@ -511,10 +497,10 @@ Alignment LocalMap::Impl::Align(const FacedPoints& points_in_robot, const Pose2&
     }
     sigma = std::max(options_.point_sigma_m, 0.5 * sigma);
   }
-  result.inlier_share =
-      Step(result.T_map_robot, options_.point_sigma_m, sights, hessian, gradient) /
-      static_cast<double>(points_in_robot.size());
-  result.information = hessian / options_.covariance_inflation;
+  const Sums sums = SumOver(sights, result.T_map_robot, options_.point_sigma_m);
+  result.inlier_share = sums.inliers / static_cast<double>(points_in_robot.size());
+  result.information = sums.hessian / options_.covariance_inflation;
+  result.information_of_noise = sums.of_noise / options_.covariance_inflation;
   return result;
 }
 
@@ -541,11 +527,6 @@ Alignment LocalMap::AlignHeld(const FacedPoints& points_in_robot, const Pose2& T
 double LocalMap::Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
                            double sigma_m) const {
   return impl_->Agreement(points_in_robot, T_map_robot, sigma_m);
-}
-
-Eigen::Matrix2d LocalMap::InformationOfNoise(const FacedPoints& points_in_robot,
-                                             const Pose2& T_map_robot) const {
-  return impl_->InformationOfNoise(points_in_robot, T_map_robot);
 }
 
 std::size_t LocalMap::scans() const { return impl_->scans(); }

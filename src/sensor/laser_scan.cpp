@@ -26,14 +26,16 @@ bool LaserScan::IsFullCircle() const {
 
 ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan) {
   ScanPoints::Ptr points(new ScanPoints);
-  points->reserve(scan.size());
+  points->resize(scan.size());
+  std::size_t hits = 0;
   auto direction = BeamSweep::InRobot(scan);
   for (std::size_t beam = 0; beam < scan.size(); ++beam, direction.Advance()) {
     if (!scan.IsHit(beam)) continue;
     const Eigen::Vector2d point_in_robot =
         scan.T_robot_laser.Translation() + scan.ranges[beam] * direction.Current();
-    points->push_back(AsPoint(point_in_robot));
+    (*points)[hits++] = AsPoint(point_in_robot);
   }
+  points->resize(hits);
   return points;
 }
 

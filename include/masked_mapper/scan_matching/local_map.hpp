@@ -57,6 +57,9 @@ double FrontOf(const FacedPoints& points, double theta);
 struct Alignment {
   Pose2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the scan alone, of (x, y, theta)
+  /// Of its (x, y), in map: what the noise of the walls' directions makes up. Walls that are known
+  /// by few points seem to tell a little of the way along them, too.
+  Eigen::Matrix2d information_of_noise = Eigen::Matrix2d::Zero();
   double inlier_share = 0.0;  ///< of the points that lie within the map's cells and agree, 0-1
   int iterations = 0;
   bool converged = false;
@@ -82,11 +85,6 @@ class LocalMap {
   /// The same with a guess that keeps its say whatever the points hold against it.
   Alignment AlignHeld(const FacedPoints& points_in_robot, const Pose2& T_map_robot_guess,
                       const Eigen::Matrix3d& prior_information) const;
-
-  /// Of an alignment's information of (x, y), in map: what the noise of the walls' directions makes
-  /// up. Walls that are known by few points seem to tell a little of the way along them, too.
-  Eigen::Matrix2d InformationOfNoise(const FacedPoints& points_in_robot,
-                                     const Pose2& T_map_robot) const;
 
   /// Share of the points that agree with the map at a pose, 0-1: a cheap score to compare guesses.
   double Agreement(const FacedPoints& points_in_robot, const Pose2& T_map_robot,
