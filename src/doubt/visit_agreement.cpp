@@ -13,10 +13,9 @@ constexpr double kPointSpacing = 0.2;  // m between points that are asked about
 
 enum class Word { kNothing, kMet, kThrough };
 
-// What one scan says of a point in its robot's frame. Beams beside the one that is asked count too:
+// What one scan says of a point. Beams beside the one that is asked count too:
 // a wall's edge is met or missed by a degree.
-Word WordOf(const LaserScan& scan, const Eigen::Vector2d& point_in_robot, double tolerance_m) {
-  const Eigen::Vector2d in_laser = Inverse(scan.T_robot_laser) * point_in_robot;
+Word WordOf(const LaserScan& scan, const Eigen::Vector2d& in_laser, double tolerance_m) {
   const double range = in_laser.norm();
   const double turn = WrapAngle(std::atan2(in_laser.y(), in_laser.x()) - scan.first_angle);
   const double beams = scan.angle_step < 0.0
@@ -38,6 +37,18 @@ Word WordOf(const LaserScan& scan, const Eigen::Vector2d& point_in_robot, double
   }
   return through ? Word::kThrough : Word::kNothing;
 }
+
+/// A visit whose scan is asked about many points.
+struct Asked {
+  Asked(const Visit& visit, const LaserScan& asked_scan)
+      : to_robot(Inverse(visit.T_world_robot)),
+        to_laser(Inverse(asked_scan.T_robot_laser)),
+        scan(asked_scan) {}
+
+  PointTransform to_robot;  ///< from world
+  PointTransform to_laser;  ///< from robot
+  const LaserScan& scan;
+};
 
 }  // namespace
 
@@ -62,17 +73,20 @@ Agreement AgreementOf(const BuildingMap& map, const Visit& newer, const std::vec
                       double range_m, double tolerance_m) {
   Agreement agreement;
   const ScanPoints::ConstPtr points = PointsInRobot(map.kept_scans[newer.kept].scan);
+  const PointTransform to_world(newer.T_world_robot);
+  std::vector<Asked> asked;
+  asked.reserve(older.size());
+  for (const Visit& other : older) asked.emplace_back(other, map.kept_scans[other.kept].scan);
   Eigen::Vector2d last(1e9, 1e9);
   for (const pcl::PointXY& point : *points) {
     const Eigen::Vector2d in_newer(point.x, point.y);
     if (in_newer.norm() > range_m || (in_newer - last).norm() < kPointSpacing) continue;
     last = in_newer;
     Word word = Word::kNothing;
-    for (const Visit& other : older) {
-      const Eigen::Vector2d in_older =
-          Inverse(other.T_world_robot) * (newer.T_world_robot * in_newer);
+    for (const Asked& other : asked) {
+      const Eigen::Vector2d in_older = other.to_robot * (to_world * in_newer);
       if (in_older.norm() > range_m) continue;
-      const Word said = WordOf(map.kept_scans[other.kept].scan, in_older, tolerance_m);
+      const Word said = WordOf(other.scan, other.to_laser * in_older, tolerance_m);
       if (said == Word::kMet) {
         word = Word::kMet;
         break;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "wall_crossings.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -83,11 +82,10 @@ class Ways {
 std::vector<Eigen::Vector2d> HitsOf(const BuildingMap& map, const Visit& visit) {
   std::vector<Eigen::Vector2d> hits;
   const ScanPoints::ConstPtr points = PointsInRobot(map.kept_scans[visit.kept].scan);
-  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(visit.T_world_robot.theta).toRotationMatrix();
-  const Eigen::Vector2d robot = visit.T_world_robot.Translation();
+  const PointTransform to_world(visit.T_world_robot);
   for (const pcl::PointXY& point : *points) {
     const Eigen::Vector2d in_robot(point.x, point.y);
-    if (in_robot.norm() <= kFarthestWall) hits.emplace_back(robot + rotation * in_robot);
+    if (in_robot.norm() <= kFarthestWall) hits.push_back(to_world * in_robot);
   }
   return hits;
 }

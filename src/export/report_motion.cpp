@@ -71,14 +71,13 @@ Json ScansJson(const BuildingMap& result, const Pose2& T_world_odom, double max_
     const TrajectoryPose& pose = result.trajectory.at(kept.trajectory_index);
     if (pose.in_transit) continue;
     std::uint32_t count = 0;
-    for (std::size_t beam = 0; beam < kept.scan.size(); ++beam) {
+    BeamSweep direction = BeamSweep::InRobot(kept.scan);
+    for (std::size_t beam = 0; beam < kept.scan.size(); ++beam, direction.Advance()) {
       if (place++ % stride != 0 || !kept.scan.IsHit(beam)) continue;
       const auto range = static_cast<double>(kept.scan.ranges[beam]);
       if (range > max_range_m) continue;
-      const double angle = kept.scan.Angle(beam);
       const Eigen::Vector2d point_in_robot =
-          kept.scan.T_robot_laser *
-          Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
+          kept.scan.T_robot_laser.Translation() + range * direction.Current();
       xy.push_back(QuantisedSigned(point_in_robot.x(), step));
       xy.push_back(QuantisedSigned(point_in_robot.y(), step));
       ++count;

@@ -503,11 +503,11 @@ class DriveJoiner {
     for (const KeptScan& kept : map_.kept_scans) {
       const std::size_t drive = DriveOfPose(map_, kept.trajectory_index);
       if (std::count(drives.begin(), drives.end(), drive) == 0) continue;
-      const Pose2& T_world_robot = map_.trajectory[kept.trajectory_index].T_world_robot;
+      const PointTransform to_world(map_.trajectory[kept.trajectory_index].T_world_robot);
       const ScanPoints::ConstPtr points = PointsInRobot(kept.scan);
       for (const pcl::PointXY& point : *points) {
         const Eigen::Vector2d in_robot(point.x, point.y);
-        if (in_robot.norm() <= joins_.seen.max_usable_range_m) take(T_world_robot * in_robot);
+        if (in_robot.norm() <= joins_.seen.max_usable_range_m) take(to_world * in_robot);
       }
     }
     return box;

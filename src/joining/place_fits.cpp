@@ -202,8 +202,9 @@ std::optional<PlaceFit> PlaceFits::FitOf(const Place& place, FloorId older,
   }
   double sum = 0.0;
   std::size_t shared = 0;
+  const PointTransform to_world(fit.T_world_place);
   for (const Eigen::Vector2d& point : place.fine_points) {
-    const Eigen::Vector2d in_world = fit.T_world_place * point;
+    const Eigen::Vector2d in_world = to_world * point;
     const double value = floor.scene.fine().ValueAt(in_world);
     if (value == 0.0 && !floor.scene.IsSeen(in_world)) continue;
     sum += value;

@@ -25,8 +25,9 @@ PatchFit FitOfFree(const Patch& patch, const SearchableFloor& floor, const Pose2
       0.2;  // of the lattice's points of a square metre that a wall crosses
   int walls = 0;
   int seen = 0;
+  const PointTransform to_world(T_world_odom);
   for (const Eigen::Vector2d& point : patch.points_in_odom) {
-    const Eigen::Vector2d in_world = T_world_odom * point;
+    const Eigen::Vector2d in_world = to_world * point;
     seen += floor.IsSeen(in_world) ? 1 : 0;
     walls += IsWall(floor.seen(), in_world) ? 1 : 0;
   }
@@ -41,8 +42,9 @@ PatchFit FitOf(const Patch& patch, const SearchableFloor& floor, const Pose2& T_
   if (patch.is_free) return FitOfFree(patch, floor, T_world_odom);
   double sum = 0.0;
   int known = 0;
+  const PointTransform to_world(T_world_odom);
   for (const Eigen::Vector2d& point : patch.points_in_odom) {
-    const Eigen::Vector2d in_world = T_world_odom * point;
+    const Eigen::Vector2d in_world = to_world * point;
     // Behind a wall that was seen from one side the map knows nothing.
     if (!floor.IsSeen(in_world)) continue;
     sum += floor.fine().ValueAt(in_world);

@@ -61,21 +61,21 @@ void ChangeFinder::Observe(const LaserScan& scan, const SearchableFloor& floor,
                            const Pose2& T_world_robot) {
   floors_[floor.floor()] = &floor;
   const OccupancyGrid& grid = floor.seen();
-  const Pose2 T_world_laser = T_world_robot * scan.T_robot_laser;
+  const PointTransform to_world(T_world_robot * scan.T_robot_laser);
   for (std::size_t beam = 0; beam < scan.size(); ++beam) {
     if (!scan.IsHit(beam)) continue;
     const double range = scan.ranges[beam];
     const double angle = scan.Angle(beam);
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     if (range <= kFarthest) {
-      const Eigen::Vector2d end = T_world_laser * Eigen::Vector2d(range * direction);
+      const Eigen::Vector2d end = to_world * Eigen::Vector2d(range * direction);
       Vote(ChangeKind::kNew, floor.floor(), end, IsFreeAround(grid, end), T_world_robot);
       if (IsOccupied(grid, end)) {
         Vote(ChangeKind::kGone, floor.floor(), end, false, T_world_robot);
       }
     }
     for (double at = kStep; at < std::min(range - kMargin, kFarthest); at += kStep) {
-      const Eigen::Vector2d through = T_world_laser * Eigen::Vector2d(at * direction);
+      const Eigen::Vector2d through = to_world * Eigen::Vector2d(at * direction);
       if (IsOccupied(grid, through)) {
         Vote(ChangeKind::kGone, floor.floor(), through, true, T_world_robot);
       }

@@ -39,9 +39,10 @@ std::vector<Patch> HitsOf(const LaserScan& scan, const Pose2& T_odom_robot) {
   std::unordered_set<std::int64_t> cells;
   std::map<std::int64_t, Patch> patches;
   const ScanPoints::ConstPtr points_in_robot = PointsInRobot(scan);
+  const PointTransform to_odom(T_odom_robot);
   for (const pcl::PointXY& point : *points_in_robot) {
     if (std::hypot(point.x, point.y) > kFarthest) continue;
-    const Eigen::Vector2d in_odom = T_odom_robot * Eigen::Vector2d(point.x, point.y);
+    const Eigen::Vector2d in_odom = to_odom * Eigen::Vector2d(point.x, point.y);
     if (!cells.insert(Key(in_odom, kCell)).second) continue;
     patches[Key(in_odom, kPatch)].points_in_odom.push_back(in_odom);
   }
@@ -71,9 +72,10 @@ void Stretch::Add(const LaserScan& scan, const Pose2& T_odom_robot) {
     hit_cells_.clear();
     free_cells_.clear();
   }
+  const PointTransform to_odom(T_odom_robot);
   for (const pcl::PointXY& point : *views_.back().points_in_robot) {
     if (std::hypot(point.x, point.y) > kFarthest) continue;
-    const Eigen::Vector2d in_odom = T_odom_robot * Eigen::Vector2d(point.x, point.y);
+    const Eigen::Vector2d in_odom = to_odom * Eigen::Vector2d(point.x, point.y);
     if (hit_cells_.insert(Key(in_odom, kCell)).second) new_hits_in_odom_.push_back(in_odom);
   }
   SeeFree(scan, T_odom_robot);
@@ -82,7 +84,7 @@ void Stretch::Add(const LaserScan& scan, const Pose2& T_odom_robot) {
 // A beam went through, well before where it ended.
 void Stretch::SeeFree(const LaserScan& scan, const Pose2& T_odom_robot) {
   constexpr double kBeforeTheEnd = 0.5;  // m
-  const Pose2 T_odom_laser = T_odom_robot * scan.T_robot_laser;
+  const PointTransform to_odom(T_odom_robot * scan.T_robot_laser);
   const auto step = std::max<std::size_t>(
       1, static_cast<std::size_t>(kBeamEvery / std::max(1e-6, std::abs(scan.angle_step))));
   for (std::size_t beam = 0; beam < scan.size(); beam += step) {
@@ -91,7 +93,7 @@ void Stretch::SeeFree(const LaserScan& scan, const Pose2& T_odom_robot) {
     const double angle = scan.Angle(beam);
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     for (double range = kCell; range < end; range += kCell) {
-      const Eigen::Vector2d in_odom = T_odom_laser * Eigen::Vector2d(range * direction);
+      const Eigen::Vector2d in_odom = to_odom * Eigen::Vector2d(range * direction);
       if (free_cells_.insert(Key(in_odom, kCell)).second) new_free_in_odom_.push_back(in_odom);
     }
   }

@@ -41,23 +41,24 @@ struct Counts {
 Counts Compare(const std::deque<PlacedScan>& walls, const std::deque<PlacedScan>& views,
                const Eigen::Vector2d& cab_in_odom, const FloorLidarOptions& options) {
   Counts counts;
-  std::vector<Pose2> T_laser_odom;
+  std::vector<PointTransform> to_laser;
   for (const PlacedScan& view : views) {
-    T_laser_odom.push_back(Inverse(view.T_odom_robot * view.scan.T_robot_laser));
+    to_laser.emplace_back(Inverse(view.T_odom_robot * view.scan.T_robot_laser));
   }
   for (const PlacedScan& wall : walls) {
+    const PointTransform to_odom(wall.T_odom_robot);
     BeamSweep direction = BeamSweep::InRobot(wall.scan);
     for (std::size_t i = 0; i < wall.scan.size(); ++i, direction.Advance()) {
       if (!wall.scan.IsHit(i)) continue;
       const Eigen::Vector2d point_in_robot =
           wall.scan.T_robot_laser.Translation() +
           static_cast<double>(wall.scan.ranges[i]) * direction.Current();
-      const Eigen::Vector2d point_in_odom = wall.T_odom_robot * point_in_robot;
+      const Eigen::Vector2d point_in_odom = to_odom * point_in_robot;
       const double distance = (point_in_odom - cab_in_odom).norm();
       if (distance < options.door_distance_m || distance > options.scene_radius_m) continue;
       View best = View::kNone;
       for (std::size_t k = 0; k < views.size() && best != View::kAgrees; ++k) {
-        const View view = ViewOf(views[k].scan, T_laser_odom[k] * point_in_odom, options.agree_m);
+        const View view = ViewOf(views[k].scan, to_laser[k] * point_in_odom, options.agree_m);
         if (view != View::kNone) best = view;
       }
       counts.alike += best == View::kAgrees;

@@ -87,13 +87,14 @@ void SweepCheck::Observe(const LaserScan& scan) {
   const bool is_enough = pairs_.size() >= kMostPairs || without_wheels_ >= kMostWithoutWheels;
   if (!has_wheels && is_enough) return;
   without_wheels_ += has_wheels ? 0 : 1;
-  Seen seen{scan, has_wheels ? *scan.T_odom_robot : Pose2{}, Pose2{}, 0.0};
+  Seen seen{std::make_shared<const LaserScan>(scan), has_wheels ? *scan.T_odom_robot : Pose2{},
+            Pose2{}, 0.0};
   if (!has_wheels) {
     scans_alone_.Observe(Timed(scan, 0.0));  // nobody knows yet whether what is stated is right
     seen.T_odom_robot = scans_alone_.T_odom_robot();
   }
-  if (last_ && last_->scan.T_odom_robot.has_value() == has_wheels) {
-    last_->seconds = scan.stamp - last_->scan.stamp;
+  if (last_ && last_->scan->T_odom_robot.has_value() == has_wheels) {
+    last_->seconds = scan.stamp - last_->scan->stamp;
     last_->T_now_next = Between(last_->T_odom_robot, seen.T_odom_robot);
     if (periods_.size() < kMostStated) {
       periods_.push_back(static_cast<float>(last_->seconds));
@@ -108,7 +109,7 @@ void SweepCheck::Observe(const LaserScan& scan) {
 }
 
 void SweepCheck::Enter(const Seen& seen) {
-  while (!recent_.empty() && recent_.front().scan.stamp < seen.scan.stamp - kTogether) {
+  while (!recent_.empty() && recent_.front().scan->stamp < seen.scan->stamp - kTogether) {
     recent_.pop_front();
   }
   const Seen* other = nullptr;
@@ -135,7 +136,7 @@ double SweepCheck::BentApart(const Seen& a, const Seen& b) {
 
 void SweepCheck::Keep(Pair pair) {
   const bool same_turn =
-      !pairs_.empty() && pair.second.scan.stamp - pairs_.back().second.scan.stamp < kApart;
+      !pairs_.empty() && pair.second.scan->stamp - pairs_.back().second.scan->stamp < kApart;
   if (same_turn) {
     if (pair.bent_rad_per_s > pairs_.back().bent_rad_per_s) pairs_.back() = std::move(pair);
     return;
@@ -166,7 +167,7 @@ std::vector<double> SweepCheck::Fits(const Pair& pair) const {
   for (int i = -kTried; i <= kTried; ++i) {
     const double seconds_per_rad = kTriedStep * i * LongestSweep();
     const auto points = [&](const Seen& seen) {
-      return Thinned(*PointsInRobot(Straightened(Timed(seen.scan, seconds_per_rad),
+      return Thinned(*PointsInRobot(Straightened(Timed(*seen.scan, seconds_per_rad),
                                                  SteadyMotion(seen.T_now_next, seen.seconds))));
     };
     LocalMap map(options, Eigen::Vector2d::Zero());

@@ -100,7 +100,7 @@ class LocalMap::Impl {
   /// Four points as an alignment goes on, and what is known where they lie: most stay in their
   /// cells from one step to the next.
   struct Sight {
-    Four x = Four::Zero(), y = Four::Zero();      ///< of the points, in robot
+    Four x = Four::Constant(kNowhere), y = Four::Zero();  ///< of the points, in robot
     FourCells cell = FourCells::Constant(kNone);  ///< row by row; kNone: outside, or no point
     Four mean_x = Four::Zero(), mean_y = Four::Zero();
     Four normal_x = Four::Zero(), normal_y = Four::Zero();
@@ -203,12 +203,13 @@ std::vector<LocalMap::Impl::Sight> LocalMap::Impl::SightsOf(const FacedPoints& p
                                                             double theta) const {
   const std::vector<std::uint8_t> sides = SidesOf(points, theta);
   std::vector<Sight> sights((points.size() + 3) / 4);
-  if (!sights.empty()) sights.back().x.setConstant(kNowhere);
   for (std::size_t i = 0; i < points.size(); ++i) {
+    // Not a number compares false.
+    if (!(std::abs(points.x[i]) < kNowhere && std::abs(points.y[i]) < kNowhere)) continue;
     Sight& sight = sights[i / 4];
     const auto lane = static_cast<Eigen::Index>(i % 4);
-    sight.x[lane] = std::clamp(points.x[i], -kNowhere, kNowhere);
-    sight.y[lane] = std::clamp(points.y[i], -kNowhere, kNowhere);
+    sight.x[lane] = points.x[i];
+    sight.y[lane] = points.y[i];
     sight.side[i % 4] = sides[i];
   }
   return sights;

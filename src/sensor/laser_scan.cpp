@@ -41,9 +41,10 @@ ScanPoints::ConstPtr PointsInRobot(const LaserScan& scan) {
 
 void AppendTransformed(const ScanPoints& points_in_b, const Pose2& T_a_b, double max_range_m,
                        ScanPoints& points_in_a) {
+  const PointTransform to_a(T_a_b);
   for (const pcl::PointXY& point : points_in_b) {
     const Eigen::Vector2d in_b(point.x, point.y);
-    if (in_b.norm() <= max_range_m) points_in_a.push_back(AsPoint(T_a_b * in_b));
+    if (in_b.norm() <= max_range_m) points_in_a.push_back(AsPoint(to_a * in_b));
   }
 }
 

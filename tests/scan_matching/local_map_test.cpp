@@ -143,6 +143,38 @@ TEST(LocalMap, FarAndMeaninglessPointsAreLeftOut) {
   EXPECT_EQ(map.Align(points, {}, Eigen::Matrix3d::Identity()).inlier_share, 0.0);
 }
 
+TEST(LocalMap, MeaninglessPointsDoNotDisturbTheOthers) {
+  const BoxScene room = FurnishedRoom();
+  const Pose2 truth{3.0, 2.7, 0.2};
+  LocalMap map({}, {3.0, 3.0});
+  map.Add(*PointsInRobot(room.Scan({2.9, 2.6, 0.1}, 361, 270.0)), {2.9, 2.6, 0.1});
+  const ScanPoints::ConstPtr points = PointsInRobot(room.Scan(truth, 361, 270.0));
+  ScanPoints more = *points;
+  for (const float x : {1e30F, -1e30F, 5e5F, std::numeric_limits<float>::infinity(),
+                        std::numeric_limits<float>::quiet_NaN()}) {
+    pcl::PointXY point;
+    point.x = x;
+    point.y = -x;
+    more.push_back(point);
+  }
+  const Pose2 guess{3.05, 2.66, 0.22};
+  const Alignment aligned = map.Align(*points, guess, Eigen::Matrix3d::Zero());
+  const Alignment beside_them = map.Align(more, guess, Eigen::Matrix3d::Zero());
+  EXPECT_LT(Distance(aligned.T_map_robot, beside_them.T_map_robot), 1e-3) << "m";
+  EXPECT_LT(Distance(aligned.T_map_robot, truth), 0.02) << "m";
+}
+
+TEST(LocalMap, IsNotSeenFromTheEndOfTheWorld) {
+  LocalMap map({}, {3.0, 3.0});
+  const ScanPoints::ConstPtr points = PointsInRobot(FurnishedRoom().Scan({3, 3, 0}, 90, 180.0));
+  map.Add(*points, {3, 3, 0});
+  for (const double x : {1e4, 1e7, 1e30, -1e300}) {
+    const Alignment aligned = map.Align(*points, {x, 0.0, 0.0}, Eigen::Matrix3d::Zero());
+    EXPECT_EQ(aligned.inlier_share, 0.0) << x;
+    EXPECT_EQ(aligned.T_map_robot.x, x);
+  }
+}
+
 TEST(LocalMap, TheTwoFacesOfAThinWallDoNotPullAtEachOther) {
   // Two rooms with a wall of 12 cm between them, thinner than a window of cells; one is well known,
   // of the other no more than a few scans. The rooms lie askew to the cells.

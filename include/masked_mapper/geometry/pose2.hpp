@@ -43,12 +43,29 @@ inline Pose2 operator*(const Pose2& T_a_b, const Pose2& T_b_c) {
           WrapAngle(T_a_b.theta + T_b_c.theta)};
 }
 
+/// A pose with its sine and cosine at hand, which cost most of what it takes to move a point: for
+/// many of them.
+class PointTransform {
+ public:
+  explicit PointTransform(const Pose2& T_a_b)
+      : x_(T_a_b.x), y_(T_a_b.y), cosine_(std::cos(T_a_b.theta)), sine_(std::sin(T_a_b.theta)) {}
+
+  /// point_in_a.
+  Eigen::Vector2d operator*(const Eigen::Vector2d& point_in_b) const {
+    return {x_ + cosine_ * point_in_b.x() - sine_ * point_in_b.y(),
+            y_ + sine_ * point_in_b.x() + cosine_ * point_in_b.y()};
+  }
+
+ private:
+  double x_;
+  double y_;
+  double cosine_;
+  double sine_;
+};
+
 /// point_in_a = T_a_b * point_in_b.
 inline Eigen::Vector2d operator*(const Pose2& T_a_b, const Eigen::Vector2d& point_in_b) {
-  const double c = std::cos(T_a_b.theta);
-  const double s = std::sin(T_a_b.theta);
-  return {T_a_b.x + c * point_in_b.x() - s * point_in_b.y(),
-          T_a_b.y + s * point_in_b.x() + c * point_in_b.y()};
+  return PointTransform(T_a_b) * point_in_b;
 }
 
 /// T_b_a of T_a_b.

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -45,7 +46,7 @@ class SweepCheck {
  private:
   /// A scan and how the robot moved after it.
   struct Seen {
-    LaserScan scan;
+    std::shared_ptr<const LaserScan> scan;
     Pose2 T_odom_robot;
     Pose2 T_now_next;
     double seconds = 0.0;      ///< to the next
