@@ -22,6 +22,8 @@ namespace masked_mapper {
 
 namespace {
 
+constexpr NodeId kPrepared = 8;  // newer nodes, whose older ones are made ready together
+
 using Validator = std::variant<EvidenceValidator, VoteValidator>;
 
 Validator ValidatorFor(const ValidatorOptions& options) {
@@ -48,6 +50,9 @@ class LoopCloser::Impl {
   using NodePairs = std::set<std::pair<NodeId, NodeId>>;  ///< older, newer
 
   std::vector<ClosureId> MatchScans(NodeId new_node, const std::vector<Candidate>& candidates);
+  ScanPoints::ConstPtr PointsOfOlder(NodeId node) const {
+    return reference_ ? reference_(node) : matcher_.submaps().PointsAt(node);
+  }
   std::size_t Validate(std::vector<ClosureId> matches);
   void Solve();
   void CloseLate();
@@ -55,6 +60,7 @@ class LoopCloser::Impl {
   void CloseLateByWheels();
   /// Of pairs that are not among `tried`, which they become. Returns how many closed.
   std::size_t CloseOpenRevisits(NodePairs& tried);
+  void PrepareOlder(const OpenRevisits& revisits, const NodePairs& tried, NodeId first, NodeId end);
   bool CloseRevisit(NodeId newer, NodeId older);
   bool CanBeOne(const Closure& closure) const;
   bool FitsTheMap(const Closure& closure) const;
@@ -120,8 +126,7 @@ std::vector<ClosureId> LoopCloser::Impl::MatchScans(NodeId new_node,
   for (const Candidate& candidate : candidates) {
     offers.push_back(
         {candidate.node, new_node, Inverse(candidate.T_new_node), candidate.mahalanobis,
-         reference_ ? reference_(candidate.node) : matcher_.submaps().PointsAt(candidate.node),
-         points_in_newer});
+         matcher_.Has(candidate.node) ? nullptr : PointsOfOlder(candidate.node), points_in_newer});
   }
   std::vector<ClosureId> matches;
   for (Closure& closure : matcher_.Match(offers, GuessIs::kAWindow)) {
@@ -240,7 +245,11 @@ std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
   if (!any_closed) return 0;  // dead reckoning stays what it is
   const OpenRevisits revisits(map_.graph, options_.polish.revisits);
   std::size_t entered = 0;
-  for (NodeId newer = 0; static_cast<std::size_t>(newer) < map_.graph.nodes().size(); ++newer) {
+  const auto nodes = static_cast<NodeId>(map_.graph.nodes().size());
+  for (NodeId newer = 0; newer < nodes; ++newer) {
+    if (newer % kPrepared == 0) {
+      PrepareOlder(revisits, tried, newer, std::min(newer + kPrepared, nodes));
+    }
     std::vector<NodeId> open = revisits.Of(newer);
     while (!open.empty()) {
       const NodeId older = open.front();
@@ -256,6 +265,19 @@ std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
     }
   }
   return entered;
+}
+
+// The older nodes of what is open at some newer ones: threads have more to do with many at once.
+void LoopCloser::Impl::PrepareOlder(const OpenRevisits& revisits, const NodePairs& tried,
+                                    NodeId first, NodeId end) {
+  if (options_.matcher.threads <= 1) return;
+  std::set<NodeId> older;
+  for (NodeId newer = first; newer < end; ++newer) {
+    for (const NodeId node : revisits.Of(newer)) {
+      if (tried.count({node, newer}) == 0) older.insert(node);
+    }
+  }
+  late_matcher_.PrepareAround({older.begin(), older.end()});
 }
 
 bool LoopCloser::Impl::CloseRevisit(NodeId newer, NodeId older) {
@@ -274,9 +296,12 @@ bool LoopCloser::Impl::CloseRevisit(NodeId newer, NodeId older) {
   const GuessIs guess =
       options_.laid_out_by_scans ? GuessIs::kAsGoodAsAMatch : GuessIs::kASureWindow;
   // The robot may have come the other way: its scan then shows what lies behind that of the older.
-  const ClosureOffer offer{
-      older,          newer, *way, mahalanobis, late_matcher_.submaps().PointsAround(older),
-      points_in_newer};
+  const ClosureOffer offer{older,
+                           newer,
+                           *way,
+                           mahalanobis,
+                           late_matcher_.Has(older) ? nullptr : late_matcher_.PointsAround(older),
+                           points_in_newer};
   Closure closure = late_matcher_.Match({offer}, guess).front();
   const bool believed = closure.reason == ClosureReason::kTooFewVotes;
   const bool refined = believed || closure.reason == ClosureReason::kAlikeAlongALine;

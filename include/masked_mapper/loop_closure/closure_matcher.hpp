@@ -21,9 +21,9 @@ namespace masked_mapper {
 struct ClosureOffer {
   NodeId older = 0;
   NodeId newer = 0;
-  UncertainPose2 T_older_newer;  ///< the guess
-  double mahalanobis = 0.0;      ///< Eq. 7
-  ScanPoints::ConstPtr points_in_older;
+  UncertainPose2 T_older_newer;          ///< the guess
+  double mahalanobis = 0.0;              ///< Eq. 7
+  ScanPoints::ConstPtr points_in_older;  ///< not asked for where the matcher Has() the node
   ScanPoints::ConstPtr points_in_newer;
 };
 
@@ -49,6 +49,12 @@ class ClosureMatcher {
 
   /// Stages 3 and 4 alone, from `closure.T_older_newer`, which they change.
   void RefineAndBelieve(const ScanPoints& points_in_newer, Closure& closure);
+
+  /// Whether the points of an older node were taken up already, until the next call.
+  bool Has(NodeId older) const { return matcher_.Has(older); }
+
+  /// Takes up what was seen around nodes that will be offered as older ones.
+  void PrepareAround(const std::vector<NodeId>& nodes);
 
   /// What was seen around a node, in its frame.
   ScanPoints::ConstPtr PointsAround(NodeId node) const;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,7 +27,7 @@ struct Elsewhere {
 /// One pair offered to the matcher. Scans are named by a caller's key so that tables can be cached.
 struct MatchPair {
   std::int64_t reference_key = 0;
-  ScanPoints::ConstPtr points_in_reference;
+  ScanPoints::ConstPtr points_in_reference;  ///< not asked for where the matcher Has() the key
   ScanPoints::ConstPtr points_in_query;
   UncertainPose2 T_reference_query_guess;  ///< centre of the window, and prior
 };
@@ -51,6 +52,14 @@ class JointMatcher {
 
   /// Matches all pairs; results in the order of the pairs, the same at any number of threads.
   std::vector<MatchResult> Match(const std::vector<MatchPair>& pairs);
+
+  /// Whether the table of a reference is at hand, until the next call of Match() or Prepare().
+  bool Has(std::int64_t reference_key) const;
+
+  /// Makes tables that will be asked for, all at once. `points_in_reference` is asked by several
+  /// threads.
+  void Prepare(const std::vector<std::int64_t>& reference_keys,
+               const std::function<ScanPoints::ConstPtr(std::int64_t)>& points_in_reference);
 
   /// Gives back the memory of tables, which are made again where they are asked for.
   void Forget();
