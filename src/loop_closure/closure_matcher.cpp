@@ -53,12 +53,6 @@ std::vector<Closure> ClosureMatcher::Match(const std::vector<ClosureOffer>& offe
   return closures;
 }
 
-void ClosureMatcher::PrepareAround(const std::vector<NodeId>& nodes) {
-  matcher_.Prepare({nodes.begin(), nodes.end()}, [this](std::int64_t node) {
-    return submaps_->PointsAround(static_cast<NodeId>(node));
-  });
-}
-
 ScanPoints::ConstPtr ClosureMatcher::PointsAround(NodeId node) const {
   return submaps_->PointsAround(node);
 }

@@ -22,8 +22,6 @@ namespace masked_mapper {
 
 namespace {
 
-constexpr NodeId kPrepared = 8;  // newer nodes, whose older ones are made ready together
-
 using Validator = std::variant<EvidenceValidator, VoteValidator>;
 
 Validator ValidatorFor(const ValidatorOptions& options) {
@@ -60,7 +58,6 @@ class LoopCloser::Impl {
   void CloseLateByWheels();
   /// Of pairs that are not among `tried`, which they become. Returns how many closed.
   std::size_t CloseOpenRevisits(NodePairs& tried);
-  void PrepareOlder(const OpenRevisits& revisits, const NodePairs& tried, NodeId first, NodeId end);
   bool CloseRevisit(NodeId newer, NodeId older);
   bool CanBeOne(const Closure& closure) const;
   bool FitsTheMap(const Closure& closure) const;
@@ -245,11 +242,7 @@ std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
   if (!any_closed) return 0;  // dead reckoning stays what it is
   const OpenRevisits revisits(map_.graph, options_.polish.revisits);
   std::size_t entered = 0;
-  const auto nodes = static_cast<NodeId>(map_.graph.nodes().size());
-  for (NodeId newer = 0; newer < nodes; ++newer) {
-    if (newer % kPrepared == 0) {
-      PrepareOlder(revisits, tried, newer, std::min(newer + kPrepared, nodes));
-    }
+  for (NodeId newer = 0; static_cast<std::size_t>(newer) < map_.graph.nodes().size(); ++newer) {
     std::vector<NodeId> open = revisits.Of(newer);
     while (!open.empty()) {
       const NodeId older = open.front();
@@ -265,19 +258,6 @@ std::size_t LoopCloser::Impl::CloseOpenRevisits(NodePairs& tried) {
     }
   }
   return entered;
-}
-
-// The older nodes of what is open at some newer ones: threads have more to do with many at once.
-void LoopCloser::Impl::PrepareOlder(const OpenRevisits& revisits, const NodePairs& tried,
-                                    NodeId first, NodeId end) {
-  if (options_.matcher.threads <= 1) return;
-  std::set<NodeId> older;
-  for (NodeId newer = first; newer < end; ++newer) {
-    for (const NodeId node : revisits.Of(newer)) {
-      if (tried.count({node, newer}) == 0) older.insert(node);
-    }
-  }
-  late_matcher_.PrepareAround({older.begin(), older.end()});
 }
 
 bool LoopCloser::Impl::CloseRevisit(NodeId newer, NodeId older) {

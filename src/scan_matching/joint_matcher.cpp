@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <list>
 #include <map>
 #include <mutex>
@@ -123,45 +122,28 @@ class JointMatcher::Impl {
 
   bool Has(std::int64_t reference_key) const { return tables_.Has(reference_key); }
 
-  void Prepare(const std::vector<std::int64_t>& reference_keys,
-               const std::function<ScanPoints::ConstPtr(std::int64_t)>& points_in_reference) {
-    std::vector<std::int64_t> missing;
-    std::copy_if(reference_keys.begin(), reference_keys.end(), std::back_inserter(missing),
-                 [&](std::int64_t key) { return !Has(key); });
-    Make(missing, [&](std::size_t i) { return points_in_reference(missing[i]); });
-  }
-
   void Forget() { tables_.Clear(); }
 
  private:
-  /// Of keys that have none.
-  std::vector<TablePtr> Make(
-      const std::vector<std::int64_t>& keys,
-      const std::function<ScanPoints::ConstPtr(std::size_t)>& points_in_reference) {
-    std::vector<TablePtr> made(keys.size());
-    ForEach(keys.size(), options_.threads, [&](std::size_t i) {
-      made[i] =
-          std::make_shared<const LookupTable>(*points_in_reference(i), options_.table, kernels_);
-    });
-    for (std::size_t i = 0; i < made.size(); ++i) tables_.Insert(keys[i], made[i]);
-    return made;
-  }
-
   std::vector<TablePtr> TablesOf(const std::vector<MatchPair>& pairs) {
     std::map<std::int64_t, TablePtr> needed;
     std::vector<const MatchPair*> missing;
-    std::vector<std::int64_t> keys;
     for (const MatchPair& pair : pairs) {
       const auto [entry, is_new] = needed.try_emplace(pair.reference_key);
       if (!is_new) continue;
       entry->second = tables_.Find(pair.reference_key);
-      if (entry->second) continue;
-      missing.push_back(&pair);
-      keys.push_back(pair.reference_key);
+      if (!entry->second) missing.push_back(&pair);
     }
-    const std::vector<TablePtr> made =
-        Make(keys, [&](std::size_t i) { return missing[i]->points_in_reference; });
-    for (std::size_t i = 0; i < made.size(); ++i) needed[keys[i]] = made[i];
+    std::vector<TablePtr> made(missing.size());
+    const int threads_of_each = missing.size() == 1 ? options_.threads : 1;
+    ForEach(missing.size(), options_.threads, [&](std::size_t i) {
+      made[i] = std::make_shared<const LookupTable>(*missing[i]->points_in_reference,
+                                                    options_.table, kernels_, threads_of_each);
+    });
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      needed[missing[i]->reference_key] = made[i];
+      tables_.Insert(missing[i]->reference_key, made[i]);
+    }
     std::vector<TablePtr> tables;
     for (const MatchPair& pair : pairs) tables.push_back(needed[pair.reference_key]);
     return tables;
@@ -241,12 +223,6 @@ std::vector<MatchResult> JointMatcher::Match(const std::vector<MatchPair>& pairs
 }
 
 bool JointMatcher::Has(std::int64_t reference_key) const { return impl_->Has(reference_key); }
-
-void JointMatcher::Prepare(
-    const std::vector<std::int64_t>& reference_keys,
-    const std::function<ScanPoints::ConstPtr(std::int64_t)>& points_in_reference) {
-  impl_->Prepare(reference_keys, points_in_reference);
-}
 
 void JointMatcher::Forget() { impl_->Forget(); }
 

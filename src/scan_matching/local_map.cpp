@@ -107,8 +107,8 @@ class LocalMap::Impl {
     Four small = Four::Ones(), large = Four::Ones();
     Four is_known = Four::Zero();   ///< 1: the point counts
     Four is_spread = Four::Zero();  ///< 1: no line; it counts along the wall, too
-    /// Of the way along it that noise tells: of a line's weight across it, and of another place's
-    /// along it.
+    /// What the noise of a wall's direction tells of the way along it: a share of a line's weight
+    /// across it, and of the weight along what is no line.
     Four noise_of_line = Four::Zero(), noise_of_spread = Four::Zero();
     std::array<std::uint8_t, 4> side = {};
   };

@@ -8,6 +8,8 @@
 #include <limits>
 #include <new>
 
+#include "masked_mapper/scan_matching/for_each.hpp"
+
 namespace masked_mapper {
 namespace {
 
@@ -95,7 +97,7 @@ const std::uint8_t* BlurKernels::Rows(int phase_x, int phase_y) const {
 }
 
 LookupTable::LookupTable(const ScanPoints& points_in_frame, const LookupTableOptions& options,
-                         const BlurKernels& kernels)
+                         const BlurKernels& kernels, int threads)
     : resolution_(options.resolution_m),
       cells_per_m_(1.0 / options.resolution_m),
       sigma_(options.sigma_m) {
@@ -114,7 +116,7 @@ LookupTable::LookupTable(const ScanPoints& points_in_frame, const LookupTableOpt
   const int radius = kernels.radius();
   Allocate({low.x - radius, low.y - radius}, {high.x + radius + 1, high.y + radius + 1},
            options.levels);
-  Blur(points, options.join_gap_m, kernels);
+  Blur(points, options.join_gap_m, kernels, threads);
   BuildPyramid();
 }
 
@@ -131,7 +133,7 @@ LookupTable::LookupTable(const ScanPoints& points_in_frame, const TableBounds& b
   const TableCell last = CellAt(bounds.max_x, bounds.max_y);
   Allocate(low, {last.x + 1, last.y + 1}, options.levels);
   Blur(UsablePoints(points_in_frame, std::numeric_limits<double>::max()), options.join_gap_m,
-       kernels);
+       kernels, 1);
   BuildPyramid();
 }
 
@@ -181,11 +183,25 @@ void LookupTable::Allocate(TableCell low, TableCell high, int levels) {
 }
 
 void LookupTable::Blur(const std::vector<pcl::PointXY>& points, double join_gap_m,
-                       const BlurKernels& kernels) {
+                       const BlurKernels& kernels, int threads) {
+  constexpr std::size_t kOfOneThread = 2000;  // points; to start a thread takes as long
+  const std::size_t parts =
+      std::min(static_cast<std::size_t>(std::max(threads, 1)), 1 + points.size() / kOfOneThread);
+  const std::int64_t height = levels_.front().height;
+  const auto row_of = [&](std::size_t part) {
+    return height * static_cast<std::int64_t>(part) / static_cast<std::int64_t>(parts);
+  };
+  ForEach(parts, threads, [&](std::size_t part) {
+    BlurInto({row_of(part), row_of(part + 1)}, points, join_gap_m, kernels);
+  });
+}
+
+void LookupTable::BlurInto(const Rows& rows, const std::vector<pcl::PointXY>& points,
+                           double join_gap_m, const BlurKernels& kernels) {
   // Near enough for the blur to show no beads.
   const double spacing = std::max(0.5 * resolution_, sigma_ / 3.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    BlurPoint(points[i].x, points[i].y, kernels);
+    BlurPoint(points[i].x, points[i].y, kernels, rows);
     if (i == 0 || !(join_gap_m > 0.0)) continue;
     const double dx = double{points[i].x} - points[i - 1].x;
     const double dy = double{points[i].y} - points[i - 1].y;
@@ -194,12 +210,12 @@ void LookupTable::Blur(const std::vector<pcl::PointXY>& points, double join_gap_
     const int steps = static_cast<int>(gap / spacing) + 1;
     for (int step = 1; step < steps; ++step) {
       const double fraction = static_cast<double>(step) / steps;
-      BlurPoint(points[i - 1].x + fraction * dx, points[i - 1].y + fraction * dy, kernels);
+      BlurPoint(points[i - 1].x + fraction * dx, points[i - 1].y + fraction * dy, kernels, rows);
     }
   }
 }
 
-void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
+void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels, const Rows& rows) {
   const Level& cells = levels_.front();
   const double x_in_cells = x * cells_per_m_;
   const double y_in_cells = y * cells_per_m_;
@@ -215,10 +231,9 @@ void LookupTable::BlurPoint(double x, double y, const BlurKernels& kernels) {
   // 64 bits: a point far outside given bounds must not overflow.
   const std::int64_t left = std::int64_t{cell.x} - radius - cells.x0;
   const std::int64_t bottom = std::int64_t{cell.y} - radius - cells.y0;
-  if (left + size <= 0 || bottom + size <= 0 || left >= cells.width || bottom >= cells.height)
-    return;
-  const std::int64_t first_row = std::max<std::int64_t>(0, -bottom);
-  const std::int64_t end_row = std::min<std::int64_t>(size, cells.height - bottom);
+  if (left + size <= 0 || left >= cells.width) return;
+  const std::int64_t first_row = std::max<std::int64_t>(0, rows.first - bottom);
+  const std::int64_t end_row = std::min<std::int64_t>(size, rows.end - bottom);
   const bool is_inside = left >= 0 && left + size <= cells.width;
   for (std::int64_t row = first_row; row < end_row; ++row) {
     const std::uint8_t* from = kernel + row * kernels.row_bytes();

@@ -81,9 +81,9 @@ class LookupTable {
 
   /// The table of points in any frame, as large as the points need. Points that are not finite or
   /// beyond max_range_m are left out; without points every value is 0. The kernels are those of the
-  /// same options.
+  /// same options. Many points are blurred by several threads; the table is the same.
   LookupTable(const ScanPoints& points_in_frame, const LookupTableOptions& options,
-              const BlurKernels& kernels);
+              const BlurKernels& kernels, int threads = 1);
   LookupTable(const ScanPoints& points_in_frame, const LookupTableOptions& options)
       : LookupTable(points_in_frame, options, BlurKernels(options)) {}
 
@@ -108,8 +108,16 @@ class LookupTable {
 
  private:
   void Allocate(TableCell low, TableCell high, int levels);
-  void Blur(const std::vector<pcl::PointXY>& points, double join_gap_m, const BlurKernels& kernels);
-  void BlurPoint(double x, double y, const BlurKernels& kernels);
+  /// Of level 0, [first, end).
+  struct Rows {
+    std::int64_t first = 0;
+    std::int64_t end = 0;
+  };
+  void Blur(const std::vector<pcl::PointXY>& points, double join_gap_m, const BlurKernels& kernels,
+            int threads);
+  void BlurInto(const Rows& rows, const std::vector<pcl::PointXY>& points, double join_gap_m,
+                const BlurKernels& kernels);
+  void BlurPoint(double x, double y, const BlurKernels& kernels, const Rows& rows);
   void BuildPyramid();
   std::uint8_t* Writable(const Level& level) const {
     return storage_.get() + (level.data - storage_.get());

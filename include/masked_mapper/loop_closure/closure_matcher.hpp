@@ -53,9 +53,6 @@ class ClosureMatcher {
   /// Whether the points of an older node were taken up already, until the next call.
   bool Has(NodeId older) const { return matcher_.Has(older); }
 
-  /// Takes up what was seen around nodes that will be offered as older ones.
-  void PrepareAround(const std::vector<NodeId>& nodes);
-
   /// What was seen around a node, in its frame.
   ScanPoints::ConstPtr PointsAround(NodeId node) const;
 

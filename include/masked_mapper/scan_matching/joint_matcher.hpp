@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,13 +52,8 @@ class JointMatcher {
   /// Matches all pairs; results in the order of the pairs, the same at any number of threads.
   std::vector<MatchResult> Match(const std::vector<MatchPair>& pairs);
 
-  /// Whether the table of a reference is at hand, until the next call of Match() or Prepare().
+  /// Whether the table of a reference is at hand, until the next call of Match().
   bool Has(std::int64_t reference_key) const;
-
-  /// Makes tables that will be asked for, all at once. `points_in_reference` is asked by several
-  /// threads.
-  void Prepare(const std::vector<std::int64_t>& reference_keys,
-               const std::function<ScanPoints::ConstPtr(std::int64_t)>& points_in_reference);
 
   /// Gives back the memory of tables, which are made again where they are asked for.
   void Forget();
