@@ -116,6 +116,20 @@ TEST(JointMatcher, JointResultsEqualSingleOnes) {
   }
 }
 
+TEST(JointMatcher, NeedsNoPointsOfAReferenceThatItHas) {
+  std::vector<MatchPair> pairs = DrawOfficePairs(2, 17);
+  JointMatcher matcher{MatcherOptions()};
+  EXPECT_FALSE(matcher.Has(pairs[0].reference_key));
+  const std::vector<MatchResult> with_points = matcher.Match(pairs);
+  for (MatchPair& pair : pairs) {
+    EXPECT_TRUE(matcher.Has(pair.reference_key));
+    pair.points_in_reference = nullptr;
+  }
+  ExpectSameResults(matcher.Match(pairs), with_points);
+  matcher.Forget();
+  EXPECT_FALSE(matcher.Has(pairs[0].reference_key));
+}
+
 TEST(JointMatcher, AnotherRoomDoesNotMatch) {
   std::mt19937 random(14);
   const ScannerModel scanner;

@@ -117,6 +117,24 @@ TEST(LookupTable, HasNoLevelsThatDwarfIt) {
   ExpectPyramidIsPlainMaxima(table);
 }
 
+TEST(LookupTable, IsTheSameAtAnyNumberOfThreads) {
+  std::mt19937 random(8);
+  LookupTableOptions options;
+  options.join_gap_m = 0.5;
+  const ScanPoints points = RandomPoints(9000, 4.0, &random);
+  const BlurKernels kernels(options);
+  const LookupTable alone(points, options, kernels);
+  for (const int threads : {2, 3, 16}) {
+    const LookupTable shared(points, options, kernels, threads);
+    const LookupTable::Level& level = shared.level(0);
+    for (std::int32_t y = level.y0; y < level.y0 + level.height; ++y) {
+      for (std::int32_t x = level.x0; x < level.x0 + level.width; ++x) {
+        ASSERT_EQ(shared.Value(0, {x, y}), alone.Value(0, {x, y})) << threads << " threads";
+      }
+    }
+  }
+}
+
 TEST(LookupTable, WithoutPointsEverythingIsZero) {
   const LookupTable table(ScanPoints{}, LookupTableOptions{});
   ExpectPyramidIsPlainMaxima(table);
