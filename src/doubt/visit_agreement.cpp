@@ -13,8 +13,8 @@ constexpr double kPointSpacing = 0.2;  // m between points that are asked about
 
 enum class Word { kNothing, kMet, kThrough };
 
-// What one scan says of a point. Beams beside the one that is asked count too:
-// a wall's edge is met or missed by a degree.
+// What one scan says of a point. Beams beside the one that is asked count too: a wall's edge is met
+// or missed by a degree.
 Word WordOf(const LaserScan& scan, const Eigen::Vector2d& in_laser, double tolerance_m) {
   const double range = in_laser.norm();
   const double turn = WrapAngle(std::atan2(in_laser.y(), in_laser.x()) - scan.first_angle);
@@ -82,9 +82,10 @@ Agreement AgreementOf(const BuildingMap& map, const Visit& newer, const std::vec
     const Eigen::Vector2d in_newer(point.x, point.y);
     if (in_newer.norm() > range_m || (in_newer - last).norm() < kPointSpacing) continue;
     last = in_newer;
+    const Eigen::Vector2d in_world = to_world * in_newer;
     Word word = Word::kNothing;
     for (const Asked& other : asked) {
-      const Eigen::Vector2d in_older = other.to_robot * (to_world * in_newer);
+      const Eigen::Vector2d in_older = other.to_robot * in_world;
       if (in_older.norm() > range_m) continue;
       const Word said = WordOf(other.scan, other.to_laser * in_older, tolerance_m);
       if (said == Word::kMet) {

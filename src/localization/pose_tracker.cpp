@@ -84,8 +84,10 @@ std::optional<UncertainPose2> PoseTracker::MatchWith(NodeId node,
     closure.T_older_newer = offer.T_older_newer;
     matcher_.RefineAndBelieve(*points_in_robot, closure);
   } else {
-    offer.points_in_older = matcher_.PointsAround(node);
-    if (offer.points_in_older->empty()) return std::nullopt;
+    if (!matcher_.Has(node)) {
+      offer.points_in_older = matcher_.PointsAround(node);
+      if (offer.points_in_older->empty()) return std::nullopt;
+    }
     closure = matcher_.Match({offer}, GuessIs::kAWindow).front();
   }
   const bool fits =
