@@ -83,15 +83,16 @@ function(masked_mapper_room name)
   set_property(GLOBAL APPEND PROPERTY masked_mapper_rooms ${target})
 endfunction()
 
-# masked_mapper_room_test(name lib...): one GoogleTest binary of tests/<name>/*_test.cpp. Tests see the
-# headers that stand beside their sources, too: a room's own, which no other room includes.
+# masked_mapper_room_test(name lib...): one GoogleTest binary of tests/<name>/*_test.cpp, with a temporary
+# folder of its own. Tests see the headers that stand beside their sources, too: a room's own, which no
+# other room includes.
 function(masked_mapper_room_test name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
   if(NOT sources)
     return()
   endif()
   set(target masked_mapper_${name}_test)
-  add_executable(${target} ${sources})
+  add_executable(${target} ${sources} ${PROJECT_SOURCE_DIR}/tests/temporary_folder.cpp)
   masked_mapper_flags(${target})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE GTest::gtest_main ${ARGN})
