@@ -194,13 +194,10 @@ bool FitsPoorly(double chi2, std::size_t edges) {
   return chi2 > kPoorRatio * 3.0 * static_cast<double>(edges);
 }
 
-// Whether an edge is as good as met by the poses, for one that only looks for candidates.
-bool IsSettled(const UpdateOptions& options, const PoseGraph& graph, const Edge& edge) {
-  const Pose2 T_from_to = Between(graph.nodes()[static_cast<std::size_t>(edge.from)].T_world_robot,
-                                  graph.nodes()[static_cast<std::size_t>(edge.to)].T_world_robot);
-  const Pose2& measured = edge.T_from_to.mean;
-  return Distance(T_from_to, measured) < options.settled_m &&
-         std::abs(WrapAngle(T_from_to.theta - measured.theta)) < DegToRad(options.settled_deg);
+// How far two poses that ought to be one are apart, as a multiple of what is settled.
+double Unsettled(const UpdateOptions& options, const Pose2& one, const Pose2& other) {
+  return std::max(Distance(one, other) / options.settled_m,
+                  std::abs(WrapAngle(one.theta - other.theta)) / DegToRad(options.settled_deg));
 }
 
 // The nodes nearest to the ends of `edges`, by number of edges, `count` of them or a few more.
@@ -294,20 +291,22 @@ OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
   // An edge that is settled can be unsettled only by a solve that moves one of its ends, and every
   // solve takes in all edges of what it moves: it need not be looked at again.
   std::vector<EdgeId> pulling;
-  double chi2 = 0.0;
+  double pull = 0.0;
   for (; known_edges_ < graph.edges().size(); ++known_edges_) {
     const Edge& edge = graph.edges()[known_edges_];
-    if (IsSettled(options_, graph, edge)) continue;
+    const Pose2 T_from_to =
+        Between(graph.node(edge.from).T_world_robot, graph.node(edge.to).T_world_robot);
+    const double unsettled = Unsettled(options_, T_from_to, edge.T_from_to.mean);
+    if (unsettled < 1.0) continue;
     pulling.push_back(static_cast<EdgeId>(known_edges_));
-    chi2 += EdgeChi2(graph, edge);
+    pull = std::max(pull, unsettled);
   }
-  summary.initial_chi2 = summary.final_chi2 = chi2;
   if (pulling.empty()) return summary;
 
   std::vector<PoseBlock> poses = PosesOf(graph);
   constexpr std::size_t kGrowth = 3;
   auto count = static_cast<std::size_t>(std::max(2, options_.first_part_nodes));
-  for (bool first = true; chi2 <= options_.far_off_chi2; first = false, count *= kGrowth) {
+  for (bool first = true; pull <= options_.far_off; first = false, count *= kGrowth) {
     const std::vector<NodeId> moving = NodesAround(graph, pulling, count);
     if (2 * moving.size() > graph.nodes().size()) break;
     if (!first && moving.size() * kGrowth < count) return summary;  // that was the whole component
@@ -319,12 +318,14 @@ OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
     summary.iterations = solution.iterations;
     summary.converged = solution.converged;
     poses = std::move(solution.poses);
+    double moved = 0.0;
     for (const NodeId node : moving) {
       const PoseBlock& pose = poses[static_cast<std::size_t>(node)];
-      graph.SetPose(node, {pose[0], pose[1], WrapAngle(pose[2])});
+      const Pose2 T_world_robot{pose[0], pose[1], WrapAngle(pose[2])};
+      moved = std::max(moved, Unsettled(options_, graph.node(node).T_world_robot, T_world_robot));
+      graph.SetPose(node, T_world_robot);
     }
-    const double gain = summary.initial_chi2 - summary.final_chi2;
-    if (!first && gain < options_.negligible_gain) return summary;
+    if (moved < 1.0) return summary;
   }
   return Optimize(options_.solver, graph);
 }

@@ -30,23 +30,18 @@ OptimizationSummary Optimize(const OptimizerOptions& options, PoseGraph& graph);
 
 struct UpdateOptions {
   OptimizerOptions solver;
-  /// New edges that fit the poses to within these are left for a later solve: neither a candidate
-  /// nor the window of a match changes by so little.
+  /// What is off by less is left for a later solve: neither a candidate nor the window of a match
+  /// changes by so little.
   double settled_m = 0.05;
   double settled_deg = 0.5;
-  /// Sum of chi^2 of the new edges above which the whole graph is solved at once.
-  double far_off_chi2 = 200.0;
+  double far_off = 20.0;  ///< new edges off by so many times that have everything solved at once
   int first_part_nodes = 50;  ///< nodes that move in the first, smallest solve
-  /// Decrease of chi^2 by a larger part below which no larger one is tried. At the minimum no node
-  /// is then farther from where it belongs than the square root of what is left to gain, in its
-  /// sigmas.
-  double negligible_gain = 0.1;
 };
 
 /// Keeps a growing graph near its least-squares solution while it is being mapped, at a cost that
 /// does not grow with the map: solves only when a new edge pulls, and then frees only the nodes
-/// near it, in steps of larger parts with all beyond held still, until a larger part gains nothing.
-/// For the solution itself call Optimize() at the end. Choices of ours.
+/// near it, in steps of larger parts with all beyond held still, until a part moves by next to
+/// nothing. For the solution itself call Optimize() at the end. Choices of ours.
 class PoseGraphOptimizer {
  public:
   explicit PoseGraphOptimizer(const UpdateOptions& options);
