@@ -10,7 +10,6 @@
 #include "masked_mapper/loop_closure/loop_closer.hpp"
 #include "masked_mapper/map/surroundings.hpp"
 #include "masked_mapper/map/trajectory.hpp"
-#include "masked_mapper/pose_graph/dijkstra_projection.hpp"
 #include "piece_search.hpp"
 
 namespace masked_mapper {
@@ -44,10 +43,9 @@ std::vector<bool> TiedToOlderVisits(const BuildingMap& map,
 /// Nodes of older visits alone.
 std::vector<Candidate> CandidatesOf(const PoseGraph& graph, NodeId node,
                                     const std::vector<std::size_t>& visits,
-                                    const CandidateOptions& options) {
+                                    const CandidateOptions& options, CandidateSearch& search) {
   std::vector<Candidate> older;
-  for (Candidate& candidate :
-       FindCandidates(graph, node, DijkstraProjection(graph, node), options)) {
+  for (Candidate& candidate : search.Of(graph, node, options)) {
     if (visits[static_cast<std::size_t>(candidate.node)] < visits[static_cast<std::size_t>(node)]) {
       older.push_back(std::move(candidate));
     }
@@ -158,11 +156,13 @@ void TieVisits(const LoopClosureOptions& options, const FloorJoinOptions& joins,
     return AsScanPoints(ThinPoints(*PointsAround(map, node, around, table.max_range_m),
                                    table.resolution_m, table.max_range_m));
   });
+  CandidateSearch search;
   std::size_t closures = 0;
   for (std::size_t i = 0; i < visits.size(); ++i) {
     if (!map.graph.nodes()[i].HasScan() || is_tied[i]) continue;
     const auto node = static_cast<NodeId>(i);
-    const std::vector<Candidate> older = CandidatesOf(map.graph, node, visits, options.candidates);
+    const std::vector<Candidate> older =
+        CandidatesOf(map.graph, node, visits, options.candidates, search);
     if (!older.empty()) closures += closer.Close(node, older);
   }
   std::vector<bool> is_tied_visit(visits.back() + 1, false);

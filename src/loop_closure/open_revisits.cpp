@@ -57,7 +57,9 @@ std::vector<NodeId> OpenRevisits::Of(NodeId node) const {
 }
 
 std::vector<NodeId> OpenRevisits::WithinWalk(NodeId from) const {
-  std::vector<NodeId> settled;  // a walk is short: few nodes, a search costs what they cost
+  std::vector<NodeId> settled;
+  std::vector<char> is_settled(graph_.nodes().size(), 0);
+  const auto is_done = [&](NodeId node) { return is_settled[static_cast<std::size_t>(node)] != 0; };
   std::priority_queue<std::pair<double, NodeId>, std::vector<std::pair<double, NodeId>>,
                       std::greater<>>
       queue;
@@ -65,12 +67,14 @@ std::vector<NodeId> OpenRevisits::WithinWalk(NodeId from) const {
   while (!queue.empty()) {
     const auto [walked, node] = queue.top();
     queue.pop();
-    if (std::find(settled.begin(), settled.end(), node) != settled.end()) continue;
+    if (is_done(node)) continue;
+    is_settled[static_cast<std::size_t>(node)] = 1;
     settled.push_back(node);
     for (const EdgeId id : graph_.EdgesOf(node)) {
       const Edge& edge = graph_.edges()[static_cast<std::size_t>(id)];
       if (edge.kind == EdgeKind::kHeading) continue;
       const NodeId next = edge.from == node ? edge.to : edge.from;
+      if (is_done(next)) continue;
       const double there = walked + Distance(PoseOf(node), PoseOf(next));
       if (there <= options_.walk_m) queue.emplace(there, next);
     }
