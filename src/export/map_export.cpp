@@ -129,6 +129,7 @@ class MapWriter {
     if (!is_whole) unwritten_.Add({"building.bt", "building.pcd", "building.ply"}, "", true);
     // What takes longest comes first.
     const std::vector<std::function<void(Unwritten&)>> parts = {
+        [&](Unwritten& /*unwritten*/) { summary = Summarise(result_, run, grids_); },
         [&](Unwritten& unwritten) {
           if (is_whole) Try({"building.bt"}, unwritten, [&] { WriteOctree(); });
         },
@@ -137,7 +138,6 @@ class MapWriter {
           Try({"report.html"}, unwritten,
               [&] { report = ReportData(result_, grids_, options_.grid.max_usable_range_m); });
         },
-        [&](Unwritten& /*unwritten*/) { summary = Summarise(result_, run, grids_); },
         [&](Unwritten& unwritten) { WriteTables(unwritten); }};
     std::vector<Unwritten> unwritten(parts.size());
     ForEach(parts.size(), options_.grid.threads, [&](std::size_t i) { parts[i](unwritten[i]); });
