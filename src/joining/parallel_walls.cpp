@@ -38,12 +38,26 @@ struct Part {
   NodeId node = -1;  ///< the nearest to its middle
 };
 
-std::vector<std::vector<WallLine>> WallsOfFloors(const BuildingMap& map, int threads) {
+/// A few from every place, whichever way the robot looked: how often a corridor was driven along
+/// adds little to what its walls tell, and much to what drawing them costs.
+std::vector<PosedScan> ScansOfPlaces(const BuildingMap& map) {
+  constexpr double kPlace = 1.0;  // m
+  constexpr int kMostAtPlace = 14;
+  std::map<std::tuple<FloorId, int, int>, int> at_place;
   std::vector<PosedScan> scans;
   for (const KeptScan& kept : map.kept_scans) {
     const TrajectoryPose& pose = map.trajectory[kept.trajectory_index];
-    if (!pose.in_transit) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
+    if (pose.in_transit) continue;
+    const Eigen::Vector2d cell = pose.T_world_robot.Translation() / kPlace;
+    int& count = at_place[{pose.floor, static_cast<int>(std::floor(cell.x())),
+                           static_cast<int>(std::floor(cell.y()))}];
+    if (count++ < kMostAtPlace) scans.push_back({pose.T_world_robot, pose.floor, &kept.scan});
   }
+  return scans;
+}
+
+std::vector<std::vector<WallLine>> WallsOfFloors(const BuildingMap& map, int threads) {
+  const std::vector<PosedScan> scans = ScansOfPlaces(map);
   GridOptions grid;
   grid.threads = threads;
   grid.glass = false;  // a pane is hit seldom: directions are told by walls
