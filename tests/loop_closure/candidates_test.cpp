@@ -141,6 +141,16 @@ TEST(Candidates, SearchedFromNodeToNodeAreThoseOfTheWholeProjection) {
                    EdgeKind::kClosure});
   }
   EXPECT_GT(found, 1000U);
+  // Of a graph that is whole, one node after the other, and as the last poses have it.
+  CandidateSearch afresh;
+  for (NodeId node = 0; node < static_cast<NodeId>(graph.nodes().size()); node += 7) {
+    const auto expected = FindCandidates(graph, node, DijkstraProjection(graph, node), options);
+    const auto candidates = afresh.Of(graph, node, options);
+    ASSERT_EQ(candidates.size(), expected.size()) << node;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      EXPECT_EQ(candidates[c].node, expected[c].node) << node;
+    }
+  }
 }
 
 }  // namespace

@@ -308,6 +308,20 @@ TEST(PoseGraphOptimizer, FarNodesStayWhenASmallLoopCloses) {
   EXPECT_LT(LargestDeviation(graph, solved), 0.05) << "m";
 }
 
+// One round whose end lies metres beside its beginning: no part of it can take that alone.
+TEST(PoseGraphOptimizer, WhatIsFarOffHasTheWholeSolved) {
+  PoseGraph graph = NoisyRounds(Rounds(150, 1), 150, 1.0, 5);
+  const auto last = static_cast<NodeId>(graph.nodes().size() - 1);
+  PoseGraphOptimizer optimizer({});
+  optimizer.Update(graph);
+  ASSERT_GT(Distance(graph.node(last).T_world_robot * Pose2{1.0, 0.0, 0.0}, {}), 1.0) << "m";
+  graph.AddEdge({last, 0, {{1.0, 0.0, kPi / 2}, EdgeCovariance()}, EdgeKind::kClosure});
+  PoseGraph solved = graph;
+  optimizer.Update(graph);
+  Optimize({}, solved);
+  EXPECT_EQ(LargestDeviation(graph, solved), 0.0) << "m";
+}
+
 TEST(PoseGraphOptimizer, EdgesMayBeRemovedInBetween) {
   const std::vector<Pose2> truth = Rounds(6, 3);
   PoseGraph graph = NoisyRounds(truth, 6, 1.0, 4);
