@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
+#include <future>
 #include <optional>
 
 #include "submaps.hpp"
@@ -15,6 +16,7 @@ ClosureMatcher::ClosureMatcher(const MatcherOptions& matcher, const SubmapOption
                                const BuildingMap& map)
     : ambiguity_(ambiguity),
       refine_(refine),
+      threads_(matcher.threads),
       matcher_(matcher),
       submaps_(std::make_unique<Submaps>(submaps, map)) {}
 ClosureMatcher::~ClosureMatcher() = default;
@@ -25,8 +27,14 @@ std::vector<Closure> ClosureMatcher::Match(const std::vector<ClosureOffer>& offe
     pairs.push_back(
         {offer.older, offer.points_in_older, offer.points_in_newer, offer.T_older_newer});
   }
+  // What is near by the map mostly matches: the submap that refines it is built meanwhile.
+  std::future<void> submap;
+  if (refine_ && threads_ > 1 && guess != GuessIs::kAWindow && offers.size() == 1) {
+    submap = std::async(std::launch::async, [&] { submaps_->Prepare(offers.front().older); });
+  }
   // 1. Coarse.
   const std::vector<MatchResult> matches = matcher_.Match(pairs);
+  if (submap.valid()) submap.get();
   std::vector<Closure> closures;
   for (std::size_t i = 0; i < offers.size(); ++i) {
     const ClosureOffer& offer = offers[i];

@@ -35,6 +35,9 @@ class Submaps {
   std::optional<SubmapMatch> Refine(NodeId node, const ScanPoints& points_in_robot,
                                     const UncertainPose2& T_node_robot);
 
+  /// Builds the submap of a node, unless it is at hand: not beside Refine().
+  void Prepare(NodeId node) { SubmapOf(node); }
+
   /// Gives back the memory of submaps; they are built again where they are asked for.
   void Forget();
 

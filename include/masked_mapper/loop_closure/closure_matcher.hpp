@@ -66,6 +66,7 @@ class ClosureMatcher {
 
   AmbiguityOptions ambiguity_;
   bool refine_;
+  int threads_;
   JointMatcher matcher_;
   std::unique_ptr<Submaps> submaps_;
 };
