@@ -200,6 +200,12 @@ double Unsettled(const UpdateOptions& options, const Pose2& one, const Pose2& ot
                   std::abs(WrapAngle(one.theta - other.theta)) / DegToRad(options.settled_deg));
 }
 
+double PullOf(const UpdateOptions& options, const PoseGraph& graph, const Edge& edge) {
+  const Pose2 T_from_to =
+      Between(graph.node(edge.from).T_world_robot, graph.node(edge.to).T_world_robot);
+  return Unsettled(options, T_from_to, edge.T_from_to.mean);
+}
+
 // The nodes nearest to the ends of `edges`, by number of edges, `count` of them or a few more.
 std::vector<NodeId> NodesAround(const PoseGraph& graph, const std::vector<EdgeId>& edges,
                                 std::size_t count) {
@@ -293,13 +299,10 @@ OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
   std::vector<EdgeId> pulling;
   double pull = 0.0;
   for (; known_edges_ < graph.edges().size(); ++known_edges_) {
-    const Edge& edge = graph.edges()[known_edges_];
-    const Pose2 T_from_to =
-        Between(graph.node(edge.from).T_world_robot, graph.node(edge.to).T_world_robot);
-    const double unsettled = Unsettled(options_, T_from_to, edge.T_from_to.mean);
-    if (unsettled < 1.0) continue;
+    const double off = PullOf(options_, graph, graph.edges()[known_edges_]);
+    if (off < 1.0) continue;
     pulling.push_back(static_cast<EdgeId>(known_edges_));
-    pull = std::max(pull, unsettled);
+    pull = std::max(pull, off);
   }
   if (pulling.empty()) return summary;
 
@@ -325,7 +328,11 @@ OptimizationSummary PoseGraphOptimizer::Update(PoseGraph& graph) {
       moved = std::max(moved, Unsettled(options_, graph.node(node).T_world_robot, T_world_robot));
       graph.SetPose(node, T_world_robot);
     }
-    if (moved < 1.0) return summary;
+    // What holds out against its surroundings may ask for more than they can give.
+    const bool holds_out = std::any_of(pulling.begin(), pulling.end(), [&](EdgeId id) {
+      return PullOf(options_, graph, graph.edge(id)) >= 1.0;
+    });
+    if (moved < 1.0 && !holds_out) return summary;
   }
   return Optimize(options_.solver, graph);
 }
