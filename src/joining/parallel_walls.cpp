@@ -38,8 +38,8 @@ struct Part {
   NodeId node = -1;  ///< the nearest to its middle
 };
 
-/// A few from every place, whichever way the robot looked: how often a corridor was driven along
-/// adds little to what its walls tell, and much to what drawing them costs.
+/// What about two passes kept of every place: how often a corridor was driven along adds little to
+/// what its walls tell, and much to what drawing them costs.
 std::vector<PosedScan> ScansOfPlaces(const BuildingMap& map) {
   constexpr double kPlace = 1.0;  // m
   constexpr int kMostAtPlace = 14;
